@@ -17,8 +17,8 @@ G_UNIT_QUESTION = (  # end of a warning that a peak is very small
 )
 MAX_STEP_VARIATION = 0.01  # relative difference of two steps above which a column of times counts as uneven
 MIN_SAMPLES = 100  # in a record with fewer samples the zero line is not checked
-# A warning is due if the final velocity exceeds this share of the largest departure of the velocity from a straight
-# line; 289 public records have at most 0.07
+# A warning is due if the final velocity exceeds this fraction of the largest departure of the velocity from a straight
+# line between its ends. In 289 public records the fraction is at most 0.07.
 MAX_FINAL_VELOCITY_SHARE = 0.2
 MIN_CLIPPED_SAMPLES = 4  # at least this many equal samples in a row at the peak count as clipped
 EQUAL_SAMPLE_TOLERANCE = 1e-9  # relative difference below which two samples count as equal
@@ -82,7 +82,7 @@ class RecordDescription:
     detrend : str or None
         What the scene takes off every direction, "mean" or "linear".
     warnings : tuple of str
-        What is hardly meant, one sentence each.
+        One sentence on each value that is hardly intended.
     """
 
     title: str
@@ -98,6 +98,7 @@ class RecordDescription:
     @property
     def lines(self) -> list[str]:
         """Return the description as lines of text."""
+        # origin lines such as "x: a.csv, CSV" by their axis: they join the line of their direction
         along = {line[0]: line[3:] for line in self.origin if line[1:3] == ": " and line[0] in AXES}
         return [
             self._head,
@@ -137,7 +138,11 @@ class RecordDescription:
 def describe_samples(
     title: str, origin: Sequence[str], samples: Array, scale: float = 1.0, detrend: str | None = None
 ) -> RecordDescription:
-    """Return the description of samples (K, 4), time, s, and x, y, z, m/s^2; scale, detrend: applied by the scene."""
+    """
+    Return the description of a record from its samples (K, 4): time, s, and accelerations along x, y and z, m/s^2.
+
+    title, origin: as in `RecordDescription`. scale, detrend: what the scene will apply; the samples are without them.
+    """
     time, steps = samples[:, 0], np.diff(samples[:, 0])
     step = float(np.median(steps))
     read, warnings = [], []
@@ -148,7 +153,16 @@ def describe_samples(
                 gains = steps * (velocity[:-1] + steps * (2.0 * values[:-1] + values[1:]) / 6.0)
                 peak, mean = float(np.abs(values).max()), float(values.mean())
                 fastest, last = float(np.abs(velocity).max()), float(velocity[-1])
-                read.append(DirectionRead(axis, peak, mean, fastest, last, float(gains.sum())))
+                read.append(
+                    DirectionRead(
+                        axis=axis,
+                        peak=peak,
+                        mean=mean,
+                        peak_velocity=fastest,
+                        final_velocity=last,
+                        final_displacement=float(gains.sum()),
+                    )
+                )
                 warnings += _list_warnings(read[-1], values, velocity, time, detrend)
     largest = max((one.peak for one in read), default=0.0) / GRAVITY
     if largest > LARGEST_PEAK:
@@ -159,9 +173,16 @@ def describe_samples(
         warnings.append("x and y have the same samples: one file for both?")
     if np.ptp(steps) > MAX_STEP_VARIATION * step:
         warnings.append(f"the steps are not equal: {steps.min():.4g} to {steps.max():.4g} s")
-    duration = float(time[-1])
     return RecordDescription(
-        title, tuple(origin), len(samples), step, duration, tuple(read), scale, detrend, tuple(warnings)
+        title=title,
+        origin=tuple(origin),
+        samples=len(samples),
+        step=step,
+        duration=float(time[-1]),
+        directions=tuple(read),
+        scale=scale,
+        detrend=detrend,
+        warnings=tuple(warnings),
     )
 
 
@@ -178,6 +199,7 @@ def _list_warnings(one: DirectionRead, values: Array, velocity: Array, time: Arr
             f"({100.0 * abs(one.mean_over_peak):.2g} % of its peak): a zero line left in? "
             'detrend = "mean" or "linear" in [excitation] takes it off'
         )
+    # A clipped record stays at its peak: find the longest run of neighboring samples that equal the peak.
     at_limit = np.abs(values) >= one.peak * (1.0 - EQUAL_SAMPLE_TOLERANCE)
     ends = np.flatnonzero(np.diff(np.concatenate([[0], at_limit.astype(int), [0]])))
     longest = int((ends[1::2] - ends[::2]).max(initial=0))

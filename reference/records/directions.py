@@ -33,11 +33,11 @@ KNOWN_SPELLINGS = (  # examples of spellings of directions, for an error
 
 @dataclass(frozen=True)
 class Direction:
-    """A spelling of a direction with its axis; an azimuth has the axis "" and an angle, degrees."""
+    """A direction as the name of a file or column spells it."""
 
     word: str
-    axis: str
-    azimuth: float | None = None
+    axis: str  # "x", "y" or "z"; "" for an azimuth, whose axis depends on the other component
+    azimuth: float | None = None  # degrees from north to east; None for a direction that is no azimuth
 
 
 def parse_direction(word: str) -> Direction | None:
@@ -62,7 +62,11 @@ def axis_of_word(word: str) -> str:
 
 
 def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
-    """Return every way to split a file's name into the name of a motion and a direction."""
+    """
+    Return every way to split a file's name into the name of a motion and a direction, the most likely one first.
+
+    stem, suffix: of the file's name. The direction may be its end, a channel code inside it, or its suffix.
+    """
     found = []
     for length in range(min(MAX_WORD_LETTERS, len(stem) - 1), 0, -1):  # a longer word is tried first: DWN before N
         direction, base = parse_direction(stem[-length:]), stem[:-length].rstrip("-_. ")
@@ -77,9 +81,9 @@ def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
 
 def assign_axes(directions: Sequence[Direction]) -> Mapping[str, int] | None:
     """
-    Return which direction of one motion is x, which y and which z; None where their names do not determine it.
+    Return for x, y and z the index of the direction that is this axis; None where the names do not determine it.
 
-    Two horizontal ones, x before y by the table, or by their angles, and none or one that is vertical.
+    The directions must be two horizontal ones and at most one vertical one. Of two azimuths the smaller one is x.
     """
     level = [number for number, one in enumerate(directions) if one.axis != VERTICAL]
     upright = [number for number, one in enumerate(directions) if one.axis == VERTICAL]

@@ -1,10 +1,12 @@
 """
-A recorded motion as the excitation of a scene: `record = "motion.csv"`, a file by direction, a plain text with what it
-does not state, `{file = "a.acc", step = 0.01, unit = "g"}`, or a motion of a suite (`suites`), and `scale`.
+A recorded motion as the excitation of a scene: `record = "motion.csv"` in place of amplitudes, periods and decay.
 
-In Python, arrays may take the place of files: `"record": {"time": time, "acceleration": acceleration}`. Files are read
-once, when the scene is: from then on the samples are the scene's own, so that worker processes, stores and hashes need
-no file.
+The record may also be one file for each direction, `{x = "a.AT2", y = "b.AT2"}`, a plain text with the step and unit
+that it does not state, `{file = "a.acc", step = 0.01, unit = "g"}`, or a motion of a suite (`suites`). In Python, two
+arrays may take the place of files: `"record": {"time": time, "acceleration": acceleration}`.
+
+Files are read once, together with the scene. From then on the samples are part of the scene, so that worker processes,
+stored results and hashes need no file.
 """
 
 from __future__ import annotations
@@ -47,7 +49,11 @@ TWO_FREQUENCY_KEYS = ("amplitudes", "periods", "decay")  # keys of a two-frequen
 
 
 def load_record_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """Return the tables of a scene file `label` with the samples of the record in them. Raises SceneError."""
+    """
+    Return the tables of a scene file with the samples of its record added to [excitation]. Raises SceneError.
+
+    label: name or path of the scene, in whose folder files are looked for. Tables without a record are unchanged.
+    """
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data
@@ -86,15 +92,15 @@ def _read_files(record: Any, label: str) -> tuple[Array, list[str]]:
     files = files_by_axis(record)
     if not files or (files is record and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
-    readings = {
+    named = {  # name of the file and its samples, by axis
         axis: _read_named_file(label, f"excitation.record{'.' if axis else ''}{axis}", file)
         for axis, file in files.items()
     }
     try:
-        samples = join_directions({axis: reading for axis, (_, reading) in readings.items()})
+        samples = join_directions({axis: content for axis, (_, content) in named.items()})
     except RecordError as error:
         raise SceneError(label, "excitation.record", record, str(error)) from None
-    return samples, word_origin(readings)
+    return samples, word_origin(named)
 
 
 def shipped_examples() -> list[str]:

@@ -33,10 +33,11 @@ MAX_LISTED_FAULTS = 10  # largest number of lines whose faults an error lists
 @dataclass(frozen=True)
 class Motion:
     """
-    One motion of a suite: name, files by axis ("" for one file with all directions), and scale factor.
+    One motion of a suite.
 
-    magnitude: of the earthquake, None where the list does not state it. options: what the list states of the plain
-    texts, by axis. line: its number in the list, 0 of a motion that is not listed. folder: that of the list.
+    files: by axis; "" stands for one file with all directions. factor: scale factor of the accelerations. magnitude: of
+    the earthquake, None if it is not stated. options: step, unit, skip and column of plain texts, by axis. line: number
+    of its line in motions.csv, 0 if no line lists it. folder: of motions.csv.
     """
 
     name: str
@@ -51,16 +52,18 @@ class Motion:
 @dataclass(frozen=True)
 class MotionList:
     """
-    Motions of a folder in their order, and the number of its other files by kind.
+    Motions of a folder in their order, and its other files, which are ignored.
 
-    names: of ignored files that may be meant as records, by kind. proposal: what to write to take one of them.
+    ignored: number of ignored files of each kind, such as "texts". names: names of those that may be meant as records,
+    by kind. proposal: sentence on what to write so that one of them is read. listed: True if motions.csv lists the
+    motions.
     """
 
     motions: tuple[Motion, ...]
     ignored: Mapping[str, int] = field(default_factory=dict)
     names: Mapping[str, Sequence[str]] = field(default_factory=dict)
     proposal: str = ""
-    listed: bool = False  # True if motions.csv lists the motions
+    listed: bool = False
 
     @property
     def sentence(self) -> str:
@@ -124,7 +127,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
 
 
 def _split_cells(text: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return column names in lower case, and the cells of all other lines with line numbers. Raises RecordError."""
+    """Return the column names in lower case, and (line number, cells) of every other line. Raises RecordError."""
     first = next((line for line in text.splitlines() if line.strip()), "")
     reader = csv.reader(text.splitlines(), delimiter=next((mark for mark in "\t;," if mark in first), ","))
     rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader if any(map(str.strip, row))]
@@ -158,11 +161,16 @@ def _read_motion(row: Mapping[str, str], folder: Path) -> Motion:
         options[axis]["column"] = columns[min(place, len(columns) - 1)]
     factor, magnitude = _number(row, "factor", MAX_FACTOR) or 1.0, _number(row, MAGNITUDE_COLUMN, MAX_MAGNITUDE)
     known = {axis: given for axis, given in options.items() if given}
-    return Motion(row["name"], dict(zip(axes, files.values())), factor, magnitude, known)
+    paths = dict(zip(axes, files.values()))
+    return Motion(name=row["name"], files=paths, factor=factor, magnitude=magnitude, options=known)
 
 
 def _find_files(row: Mapping[str, str], folder: Path, columns: Sequence[int]) -> dict[str, Path]:
-    """Return the files of a motion by axis; of several columns of one file, each is an axis. Raises RecordError."""
+    """
+    Return the files of the motion in one line of the list by axis. Raises RecordError.
+
+    columns: numbers in the line's cell "column". Several numbers of a single file are its columns along x, y and z.
+    """
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
         raise RecordError("must have a name, and a file along x, y or z")
@@ -199,7 +207,7 @@ def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
 
 
 def _name_in_list(file: Path, folder: Path | None) -> str:
-    """Return a file's path as motions.csv in `folder` states it: relative if inside it; folder None: its name only."""
+    """Return the path of a file as motions.csv in `folder` states it, relative if inside; its name without a folder."""
     if folder is None:
         return file.name
     return str(file.relative_to(folder) if file.is_relative_to(folder) else file)

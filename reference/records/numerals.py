@@ -11,8 +11,8 @@ from reference.records.samples import MAX_ACCELERATION, RecordError
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-# Characters: part of a line searched for words (a longer CSV line is an error); longest number (longer: an error)
-MAX_LINE, MAX_CELL = 1000, 100
+MAX_LINE = 1000  # letters of a line that are searched for words; a longer line of a CSV file is an error
+MAX_CELL = 100  # letters of the longest number; a longer one is an error
 MAX_HEADER_LINES = 100  # number of lines at the start of a record file in which its header is searched for
 # Number of m/s^2 in each unit of acceleration
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
@@ -27,7 +27,7 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?"
 NUMBER_IN_RUN = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
 NOT_FINITE_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 WORD = re.compile(r"[^\W\d_]{2,}")  # two letters or more in a row: a line that has them is not a line of numbers
-NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # lines of only these are parsed as a whole, lines with others cell by cell
+NUMBER_LETTERS = {*"0123456789+-.eE \t"}  # lines of these letters alone are parsed together, others number by number
 WRITE_RECORD = "write record = "  # start of the part of an error message that says what to write in the scene file
 
 
@@ -103,7 +103,7 @@ def parse_fields(line: int, text: str) -> list[float]:
 
 
 def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
-    """Return the numbers of lines that hold only numbers (the fast way); None if lines must be parsed one by one."""
+    """Return the numbers of lines without any other text, which are parsed at once; None for other lines."""
     text = " ".join(lines)
     cells = text.split()
     if not set(text) <= NUMBER_LETTERS or max(map(len, cells), default=0) > MAX_CELL:
@@ -116,7 +116,7 @@ def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
 
 
 def holds_numbers(line: str) -> bool:
-    """Return True if a line of a record file holds numbers: not blank, and no words other than `nan` and `inf`."""
+    """Return True if a line of a record file is not blank and has no words other than `nan` and `inf`."""
     return bool(line.strip()) and not any(
         not NOT_FINITE_NUMBER.fullmatch(word) for word in WORD.findall(line[:MAX_LINE])
     )
@@ -124,10 +124,11 @@ def holds_numbers(line: str) -> bool:
 
 def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
     """
-    Return `count` numbers of data lines, notes on lines ignored or numbers split; stated: the count in header's words.
+    Return the numbers in the data lines of a record file, and notes on what was ignored or repaired.
 
-    first: line number in the file of lines[0]. Raises RecordError, which quotes `stated` if the count is wrong.
-    A line with words behind the last value ends the data.
+    first: number of the first of these lines in the file. count: how many numbers there must be. stated: how the header
+    states the count, such as "NPTS = 1000", for the error. A line with words behind the last number ends the data.
+    Raises RecordError for another count and for text that is no number.
     """
     values = parse_plain_lines(lines)
     if values is not None and len(values) == count:

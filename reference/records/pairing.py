@@ -13,7 +13,7 @@ MAX_NAMED = 20  # largest number of files that an error message names
 
 
 class SuiteError(ValueError):
-    """Error for an invalid suite of ground motions or a motion it lacks: names the scene file's key and the fault."""
+    """Error for an invalid suite of ground motions, or for a motion that a suite does not have."""
 
     def __init__(self, key: str, rule: str) -> None:
         """Set the key of the scene's `record` whose entry is wrong, and the rule that this entry breaks."""
@@ -22,7 +22,11 @@ class SuiteError(ValueError):
 
 
 def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
-    """Group files by their names without the direction; each group maps a file to (this base name, its direction)."""
+    """
+    Return groups of files whose names differ in the direction alone, by the name without it in upper case.
+
+    A group maps each file to its name without the direction, and to the direction. A file may be in several groups.
+    """
     groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
     for file in files:
         for base, direction in split_name(file.stem, file.suffix):
@@ -31,7 +35,8 @@ def _group_files(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direc
 
 
 def pair_files(files: Sequence[Path]) -> list[Motion]:
-    """Return motions, their component files paired by file name. Raises SuiteError if a file cannot be paired."""
+    """Return the motions whose components the files hold, paired by name. Raises SuiteError if a file has no pair."""
+    # As a name may be split in several ways, the largest groups are tried first, and among these the shortest names.
     groups, left, motions = _group_files(files), set(files), []
     for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
         members = [file for file in groups[base] if file in left]
@@ -46,7 +51,7 @@ def pair_files(files: Sequence[Path]) -> list[Motion]:
 
 
 def find_motion(file: Path, files: Sequence[Path]) -> Motion:
-    """Return the motion that a file belongs to: its components are the files with one base name, or this file alone."""
+    """Return the motion that a file belongs to: all files of its group are its components, or this file alone is."""
     for members in _group_files(files).values():
         if file in members and (axes := assign_axes([one for _, one in members.values()])) is not None:
             return Motion(members[file][0], {axis: [*members][number] for axis, number in axes.items()})

@@ -1,8 +1,8 @@
 """
-Data of one record file, and the samples that the files of a recorded motion make together: (K, 4), time from the first
-sample on, s, and acceleration along x, y, z, m/s^2, zero along a direction that was not recorded.
+Samples of one record file, and the samples (K, 4) that the files of a recorded motion make together.
 
-`problem/excitation.py` defines the motion between samples.
+The columns are the time from the first sample on, s, and the accelerations along x, y and z, m/s^2, which are zero
+along a direction that was not recorded. `problem/excitation.py` defines the motion between samples.
 """
 
 from __future__ import annotations
@@ -27,19 +27,20 @@ MAX_ACCELERATION = 1e300  # m/s^2, largest sample that is accepted: it stays fin
 MIN_INTERVAL = 1e-9  # s, shortest time between two samples of a record that is accepted
 # Shapes of accelerations that an error message asks for
 ACCELERATION_SHAPES = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
-STEP_MISMATCH = 1e-6  # a larger relative difference in sampling interval between two files of a motion is an error
-TIME_MISMATCH = 0.01  # share of the interval: a larger difference in time between two files of a motion is an error
+STEP_MISMATCH = 1e-6  # largest accepted relative difference in time step between two files of a motion
+TIME_MISMATCH = 0.01  # largest accepted difference between the times of two files of a motion, over their time step
 
 
 class RecordError(ValueError):
     """
-    Error for a file that is no readable record: one line with the place in the file, the text there, what it must be.
+    Error for a file that is no readable record.
 
-    said: the error in words. proposal: the end of the message, which says what to write in the scene file instead.
+    said: one line with the place in the file, the text there and what it must be. proposal: the end of the message,
+    which says what to write in the scene file instead.
     """
 
     def __init__(self, said: str, proposal: str = "") -> None:
-        """Set the error in words, `said`, and the `proposal`, which says what to write in the scene file instead."""
+        """Set the two parts of the message."""
         super().__init__(f"{said}{proposal}")
         self.said, self.proposal = said, proposal
 
@@ -47,11 +48,11 @@ class RecordError(ValueError):
 @dataclass(frozen=True)
 class RecordSamples:
     """
-    Ground acceleration samples read from one record file.
+    Samples of ground acceleration that were read from one record file.
 
-    format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
-    under "" where the file does not say along which. names: what the file calls them. step: s, where the file states
-    one in place of times. notes: what was ignored or repaired, one sentence each.
+    format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis; the
+    key is "" if the file does not say along which axis. names: what the file calls its directions, by axis. step: time
+    step, s, if the file states it in place of times. notes: sentences on what was ignored or repaired.
     """
 
     format: str
@@ -69,7 +70,8 @@ def make_even_samples(
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
     axis, time = axis_of_word(word), step * np.arange(len(values), dtype=float)
-    return RecordSamples(format, time, {axis: values}, {axis: word} if axis else {}, step, notes)
+    names = {axis: word} if axis else {}
+    return RecordSamples(format=format, time=time, directions={axis: values}, names=names, step=step, notes=notes)
 
 
 def files_by_axis(record: Any) -> dict[str, Any]:
@@ -82,22 +84,22 @@ def file_name(file: Any) -> Any:
     return file.get("file") if isinstance(file, dict) else file
 
 
-def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
+def join_directions(files: Mapping[str, RecordSamples]) -> Array:
     """
-    Return samples (K, 4), time and acceleration along x, y, z, joined from the files of all axes.
+    Return samples (K, 4), time and acceleration along x, y and z, joined from the files of one motion by axis.
 
-    Keys of `readings`: axes; "" for one file of all axes, or of x if it names none. A file that ends early is at rest
-    from there on.
+    The key "" stands for a single file; if this names no axis, it is taken along x. A file that ends before the others
+    is followed by zeros. Raises RecordError for files that do not fit together.
     """
     columns: dict[str, tuple[RecordSamples, Array]] = {}
-    for axis, reading in readings.items():
-        if axis and len(reading.directions) > 1:
-            held = ", ".join(f"{one} = {reading.names.get(one, one)}" for one in reading.directions)
+    for axis, content in files.items():
+        if axis and len(content.directions) > 1:
+            held = ", ".join(f"{one} = {content.names.get(one, one)}" for one in content.directions)
             raise RecordError(f"{axis}: the file holds several directions ({held}): give it alone, without x, y, z")
-        for own, values in reading.directions.items():
-            columns[axis or own or "x"] = reading, values
-    _check_same_steps({axis: reading for axis, (reading, _) in columns.items()})
-    longest = max((reading for reading, _ in columns.values()), key=lambda reading: len(reading.time))
+        for own, values in content.directions.items():
+            columns[axis or own or "x"] = content, values
+    _check_same_steps({axis: content for axis, (content, _) in columns.items()})
+    longest = max((content for content, _ in columns.values()), key=lambda content: len(content.time))
     first, _ = next(iter(columns.values()))
     samples = np.zeros((len(longest.time), 4))
     samples[:, 0] = longest.time if first.step is None else first.step * np.arange(len(samples))
@@ -106,9 +108,9 @@ def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
     return finish_samples(samples)
 
 
-def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
+def _check_same_steps(files: Mapping[str, RecordSamples]) -> None:
     """Raise RecordError unless the files of all directions, by axis, were sampled at the same instants."""
-    for (first, one), (second, other) in pairwise(readings.items()):
+    for (first, one), (second, other) in pairwise(files.items()):
         if one.step is not None and other.step is not None:
             if abs(one.step - other.step) > STEP_MISMATCH * one.step:
                 raise RecordError(
@@ -116,7 +118,7 @@ def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
                 )
         elif one is not other:
             count = min(len(one.time), len(other.time))
-            times = [reading.time[:count] - reading.time[:1].sum() for reading in (one, other)]
+            times = [content.time[:count] - content.time[:1].sum() for content in (one, other)]  # sum: 0 if empty
             apart = np.abs(times[0] - times[1]).max(initial=0.0)
             if count < 2 or apart > TIME_MISMATCH * np.diff(times[0]).min():
                 raise RecordError(f"other instants along {first} than along {second}: must be the same")
@@ -158,7 +160,7 @@ def _check_numbers(name: str, values: Any, shape: str) -> Array:
 
 
 def finish_samples(samples: Array) -> Array:
-    """Shift samples to start at 0 s, check their intervals, make them read-only, return them. Raises RecordError."""
+    """Return samples (K, 4), shifted in place to start at 0 s and made read-only. Raises RecordError for bad times."""
     if len(samples) < 2:
         raise RecordError(f"{len(samples)} samples: must have at least 2")
     samples[:, 0] -= samples[0, 0]
@@ -170,15 +172,19 @@ def finish_samples(samples: Array) -> Array:
 
 
 def word_origin(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
-    """Return text lines on where samples come from: one for each file (by axis), one for each note on a file."""
+    """
+    Return lines of text on where samples come from: one for each file, and one for each note on a file.
+
+    files: by axis, the name of the file and its samples.
+    """
     lines = []
-    for axis, (name, reading) in files.items():
+    for axis, (name, content) in files.items():
         told = ", ".join(
-            f"{one} = {word}" for one, word in reading.names.items() if word.lower() not in (one, f"a{one}")
+            f"{one} = {word}" for one, word in content.names.items() if word.lower() not in (one, f"a{one}")
         )
-        along = axis if axis else "x" if list(reading.directions) == [""] else ""
-        lines.append(f"{f'{along}: ' if along else ''}{one_line(name)}, {reading.format}{f', {told}' if told else ''}")
-    return lines + [f"{one_line(name)}: {note}" for name, reading in files.values() for note in reading.notes]
+        along = axis if axis else "x" if list(content.directions) == [""] else ""
+        lines.append(f"{f'{along}: ' if along else ''}{one_line(name)}, {content.format}{f', {told}' if told else ''}")
+    return lines + [f"{one_line(name)}: {note}" for name, content in files.values() for note in content.notes]
 
 
 def subtract_zero_line(samples: Array, how: str) -> None:

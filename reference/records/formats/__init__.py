@@ -1,8 +1,8 @@
 """
 Formats of recorded accelerograms: one table of readers, and one file for each format.
 
-A reader is (name, what it recognizes in the first lines, function of text and file name, suffix). The first that
-recognizes a file reads it. A new format is one file in this folder and its line in the table.
+The first reader that recognizes the first lines of a file reads it. A new format needs a file in this folder and an
+entry in the table READERS.
 """
 
 from __future__ import annotations
@@ -19,9 +19,11 @@ from reference.support.arguments import quote
 
 class Reader(NamedTuple):
     """
-    One format: its name, a function that recognizes the first lines of a file, and a function that reads it.
+    One format of record files, and how to read it.
 
-    suffix: of the files that are of this format where no reader recognizes their content; "" for none.
+    recognizes: function that returns True for the first lines of a file of this format. read: function of the text and
+    the name of a file that returns its samples. suffix: files with it are of this format if no reader recognizes their
+    content; "" for none.
     """
 
     name: str
@@ -30,13 +32,13 @@ class Reader(NamedTuple):
     suffix: str = ""
 
 
-READERS = (  # readers of all formats: the first that recognizes a file reads it
-    Reader(at2.FORMAT, at2.recognizes_at2, at2.read_at2, ".at2"),
-    Reader(knet.FORMAT, knet.recognizes_knet, knet.read_knet),
-    Reader(esm.FORMAT, esm.recognizes_esm, esm.read_esm),
-    Reader(cosmos.FORMAT, cosmos.recognizes_cosmos, cosmos.read_cosmos),
-    Reader(jma.FORMAT, jma.recognizes_jma, jma.read_jma),
-    Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv, ".csv"),
+READERS = (  # the first that recognizes a file reads it
+    Reader(name=at2.FORMAT, recognizes=at2.recognizes_at2, read=at2.read_at2, suffix=".at2"),
+    Reader(name=knet.FORMAT, recognizes=knet.recognizes_knet, read=knet.read_knet),
+    Reader(name=esm.FORMAT, recognizes=esm.recognizes_esm, read=esm.read_esm),
+    Reader(name=cosmos.FORMAT, recognizes=cosmos.recognizes_cosmos, read=cosmos.read_cosmos),
+    Reader(name=jma.FORMAT, recognizes=jma.recognizes_jma, read=jma.read_jma),
+    Reader(name=csv_table.FORMAT, recognizes=csv_table.recognizes_csv, read=csv_table.read_csv, suffix=".csv"),
 )
 READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}  # by suffix of the file
 NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
@@ -54,10 +56,10 @@ def recognize_format(text: str, suffix: str = "") -> Reader | None:
 
 def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> RecordSamples:
     """
-    Return the samples and directions that a file holds. Raises RecordError with a one-line message if unreadable.
+    Return the samples that a record file holds. Raises RecordError with a one-line message if it cannot be read.
 
-    name: of the file, which tells nothing that its content does not. options: `step`, `unit`, `skip` and `column` of
-    a plain text; `unit` alone is that of a table whose header names none.
+    name: of the file, whose suffix counts only if no reader recognizes the content. options: `step`, `unit`, `skip` and
+    `column` of a plain text; `unit` alone is that of a table whose header names none.
     """
     given, text = dict(options or {}), decode_text(content)
     if plain_text.has_options(given):

@@ -13,7 +13,7 @@ from reference.records.samples import RecordError, RecordSamples, make_even_samp
 from reference.support.arguments import quote
 from reference.support.constants import GRAVITY
 
-FORMAT = "PEER .AT2"  # name of the format
+FORMAT = "PEER .AT2"
 MAX_HEADER_LINES = 20  # largest number of lines in the header
 MAX_COUNT_DIGITS = 9  # largest number of digits of NPTS, the number of samples
 SECONDS_SUFFIX = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # unit of time written without a blank after the value of DT

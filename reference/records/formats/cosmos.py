@@ -1,4 +1,4 @@
-"""COSMOS and CSMIP V2 with one channel: the block of accelerations, in Fortran fields of the width that it states."""
+"""COSMOS and CSMIP V2 with one channel: a block of accelerations in Fortran fields, below a line that announces it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from reference.records.numerals import parse_number, unit_factor
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import quote
 
-FORMAT = "COSMOS V2"  # name of the format
+FORMAT = "COSMOS V2"
 BLOCK_HEADER = re.compile(  # COSMOS: line above the block of accelerations
     r"\s*(?P<count>[0-9]{1,9}) acceleration pts,.*units ?= ?(?P<unit>[^,(]+)"
     r".*format ?= ?\([0-9]+[fe](?P<width>[0-9]{1,3})\.",

@@ -10,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -28,7 +28,7 @@ from reference.records.numerals import (
 from reference.records.samples import AXES, RecordError, RecordSamples
 from reference.support.arguments import quote
 
-FORMAT = "CSV"  # name of the format
+FORMAT = "CSV"
 HEADER_EXAMPLE = "a header such as time [s], ax [m/s^2], ay [m/s^2]"  # words in error messages
 MAX_PREAMBLE = 20  # largest number of lines above the header
 # Names of the column of the time in a header, in several languages
@@ -56,7 +56,13 @@ DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE
 
 @dataclass(frozen=True)
 class HeaderCell:
-    """A cell of the header: its place, kind ("time", "acceleration", "wrong" or "other"), direction and unit."""
+    """
+    A cell of the header, which describes one column of the table.
+
+    place: index of the column, from 0. text: the cell. kind: "time", "acceleration", "other" for a column that is not
+    needed, or "wrong" for a column with a unit of acceleration whose name is not understood. word: name of the
+    direction, "" if there is none. factor: number of m/s^2 in the column's unit.
+    """
 
     place: int
     text: str
@@ -90,11 +96,15 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reco
     _check_rising(below, time)
     values = {axis: column.factor * table[:, column.place] for axis, column in directions.items()}
     names = {axis: column.word for axis, column in directions.items() if column.word}
-    return RecordSamples(FORMAT, time, values, names, notes=tuple(notes))
+    return RecordSamples(format=FORMAT, time=time, directions=values, names=names, notes=tuple(notes))
 
 
 def _split_lines(text: str) -> tuple[str | None, list[tuple[int, str]]]:
-    """Return the separator of the text and its numbered lines without blank ones and comments. Raises RecordError."""
+    """
+    Return the separator that the text states, or None, and its lines with their numbers. Raises RecordError if empty.
+
+    Blank lines and comments are left out.
+    """
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     separator, rows = _separator_line([(number, line) for number, line in lines if not line.lstrip().startswith("#")])
     while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves empty lines of separators at the end
@@ -117,7 +127,11 @@ def _guess_separator(line: str) -> str:
 
 
 def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple[int, str] | None:
-    """Return the first line that names a time and an acceleration, and its separator; None if no line does."""
+    """
+    Return the index of the header in numbered lines, and its separator; None if no line is a header.
+
+    The header is the first line that names a time and an acceleration. separator: as the file states it, or None.
+    """
     for row, (number, line) in enumerate(rows[:MAX_PREAMBLE]):
         if len(line) > MAX_LINE or line.lstrip().startswith("#"):
             continue
@@ -148,7 +162,11 @@ def _split_cells(number: int, line: str, separator: str) -> list[str]:
 
 
 def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
-    """Return the header with units from the line below it; None if that has a number, or no unit of acceleration."""
+    """
+    Return the cells of the header, each with the unit in the line below it; None if that is no line of units.
+
+    A line of units has a unit of acceleration and no number.
+    """
     units = [cell.strip(" []()") for cell in cells]
     if len(cells) > len(header) or not any(map(str.isalpha, "".join(units))):
         return None
@@ -160,7 +178,11 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
 
 
 def _header_columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
-    """Return the columns of the header. Raises RecordError, which quotes nothing of a file without a valid column."""
+    """
+    Return the columns that the header describes. Raises RecordError.
+
+    The error quotes nothing of a file without any valid column, which may be no record at all.
+    """
     columns = [_header_column(place, cell) for place, cell in enumerate(cells)]
     times = [column for column in columns if column.kind == "time"]
     usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
@@ -199,7 +221,7 @@ def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> He
         else:
             rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
         raise RecordError(f"line {line}: column {quote(cell)}: {quoted}: {rule}")
-    return HeaderCell(column.place, cell, column.kind, column.word, factor)
+    return replace(column, factor=factor)
 
 
 def _name_and_unit(cell: str) -> tuple[str, str]:
@@ -217,7 +239,7 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
 
 
 def _header_column(place: int, cell: str) -> HeaderCell:
-    """Return the header cell that a text means; kind "wrong": it has a unit of acceleration but no name of one."""
+    """Return what a cell of the header says of its column, without the factor of the unit."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
     if words and all(word in TIME_NAMES for word in words):
@@ -225,18 +247,22 @@ def _header_column(place: int, cell: str) -> HeaderCell:
     rest = [word for word in words if word not in ACCELERATION_NAMES]
     if words and not rest:
         return HeaderCell(place, cell, "acceleration")
-    told = len(rest) < len(words)
+    named = len(rest) < len(words)  # a word says that the column is an acceleration
     if len(rest) == 1 and ACCELERATION_WITH_AXIS.fullmatch(rest[0]):
-        return HeaderCell(place, cell, "acceleration", name)
-    if len(rest) == 1 and parse_direction(rest[0]) is not None and (told or unit or not rest[0].isdigit()):
-        if unit and unit_factor(unit) is None and not told:
+        return HeaderCell(place, cell, "acceleration", word=name)
+    if len(rest) == 1 and parse_direction(rest[0]) is not None and (named or unit or not rest[0].isdigit()):
+        if unit and unit_factor(unit) is None and not named:
             return HeaderCell(place, cell, "other")  # its unit is not one of acceleration: N [counts], v [m/s]
-        return HeaderCell(place, cell, "acceleration", rest[0].upper() if len(rest[0]) < 4 else rest[0])
+        return HeaderCell(place, cell, "acceleration", word=rest[0].upper() if len(rest[0]) < 4 else rest[0])
     return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 
 
 def _columns_by_axis(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
-    """Return acceleration columns by axis; a single one that names no direction under "". Raises RecordError."""
+    """
+    Return the columns of accelerations by axis. Raises RecordError if their names do not determine the axes.
+
+    The key is "" for a single column without the name of an axis.
+    """
     words = [column.word.lower() for column in columns]
     if twice := [column.word for column in columns if words.count(column.word.lower()) > 1]:
         raise RecordError(f"line {line}: column {twice[0] or 'of the acceleration'} is there twice")

@@ -12,7 +12,7 @@ from reference.records.numerals import parse_number, read_values, unit_factor
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import quote
 
-FORMAT = "ESM .ASC"  # name of the format
+FORMAT = "ESM .ASC"
 HEADER_ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")  # name and value in a line of the header
 
 

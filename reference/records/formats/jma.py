@@ -13,7 +13,7 @@ from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_fact
 from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import quote
 
-FORMAT = "JMA CSV"  # name of the format
+FORMAT = "JMA CSV"
 SAMPLING_RATE_LINE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)  # sampling rate, Hz
 UNIT_LINE = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)  # header line with the unit
 
@@ -42,7 +42,8 @@ def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     columns = {axis_of_word(word): factor * table[:, at] for at, word in enumerate(words)}
     names = {axis_of_word(word): word for word in words}
     step = 1.0 / sampling
-    return RecordSamples(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
+    time = step * np.arange(len(table), dtype=float)
+    return RecordSamples(format=FORMAT, time=time, directions=columns, names=names, step=step)
 
 
 def _find_header(lines: Sequence[str]) -> tuple[int, list[str]]:

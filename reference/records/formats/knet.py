@@ -11,7 +11,7 @@ import numpy as np
 from reference.records.numerals import parse_number, read_values
 from reference.records.samples import RecordError, RecordSamples, make_even_samples
 
-FORMAT = "K-NET"  # name of the format
+FORMAT = "K-NET"
 SAMPLING_RATE_LINE = re.compile(r"Sampling Freq\(Hz\)\s+([0-9.]+) ?Hz")  # header line with the sampling rate, Hz
 SCALE_FACTOR_LINE = re.compile(r"Scale Factor\s+([0-9.]+) ?\(gal\)/([0-9.]+)")  # header line: gal per count, as a ratio
 DURATION_LINE = re.compile(r"Duration Time\(s\)\s+([0-9.]+)")  # header line with the duration, s

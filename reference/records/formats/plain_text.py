@@ -30,7 +30,7 @@ from reference.records.numerals import (
 from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, make_even_samples
 from reference.support.arguments import as_float, quote
 
-FORMAT = "plain text"  # name of the format
+FORMAT = "plain text"
 OPTIONS = ("step", "unit", "skip", "column")  # keys with which a scene states how to read a plain text
 MAX_SKIP = 10_000  # largest number of lines that `skip` leaves out
 MAX_COLUMN = 100  # largest column number that `column` may state
@@ -58,9 +58,10 @@ def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
 ) -> RecordSamples:
     """
-    Return the values of a text after `skip` lines: all in file order (`column` 0), or those of one column, from 1.
+    Return the samples in a plain text, whose first `skip` lines are its header. Raises RecordError.
 
-    step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
+    step: time step, s. unit: one of `UNIT_NAMES`. column: number, from 1, of the column with the accelerations, or 0 if
+    all numbers in file order are accelerations. If step or unit is missing, the error proposes the line to write.
     """
     if step is None or unit is None:
         raise RecordError("plain text needs step and unit: ", propose_line(text, name))
@@ -78,7 +79,11 @@ def read_plain_text(
 
 @lru_cache(maxsize=64)  # the cache hashes the arguments, whose types the caller has checked
 def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int, column: int | None) -> RecordSamples:
-    """Return the samples of a text; spacing: time step, s; factor: m/s^2 per unit of the text. Raises RecordError."""
+    """
+    Return the samples of a plain text with checked options. Raises RecordError.
+
+    spacing: time step, s. factor: number of m/s^2 in the text's unit. skip, column: as in `read_plain_text`.
+    """
     lines, propose = text.splitlines(), partial(propose_line, text, name)
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: ", propose())
@@ -92,17 +97,21 @@ def _read_stated(text: str, name: str, spacing: float, factor: float, skip: int,
 
 
 class Proposal(NamedTuple):
-    """Options that a scene may state to read a plain text; `missing`: those of step, unit that are only guessed."""
+    """Options with which a plain text may be read."""
 
-    step: float
+    step: float  # s
     unit: str
-    skip: int
+    skip: int  # number of lines of the header
     columns: tuple[int, ...]  # numbers from 1; () if all values in file order are accelerations
-    missing: tuple[str, ...]
+    missing: tuple[str, ...]  # "step" and "unit" if the text does not state them, so that they are only guessed
 
 
 def propose_options(text: str) -> Proposal | str:
-    """Return options for a plain text, with step and unit from its header; a sentence for a text that is no record."""
+    """
+    Return options with which a plain text may be read, or a sentence on why it is no record.
+
+    Step and unit are those in its header. Where it names none, they are guesses.
+    """
     lines = text.splitlines()
     start = _first_data_line(lines)
     if start is None:
@@ -121,11 +130,16 @@ def propose_options(text: str) -> Proposal | str:
     counted = any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
     missing = tuple(word for word, value in (("step", known), ("unit", stated)) if value is None)
     columns = _propose_columns(rows, time is not None, counted)
-    return Proposal(0.01 if known is None else known, stated or "g", start, columns, missing)
+    spacing = 0.01 if known is None else known
+    return Proposal(step=spacing, unit=stated or "g", skip=start, columns=columns, missing=missing)
 
 
 def _propose_columns(rows: Sequence[Sequence[float]], timed: bool, counted: bool) -> tuple[int, ...]:
-    """Return the numbers, from 1, of the columns of accelerations; () if all values in file order are accelerations."""
+    """
+    Return the numbers, from 1, of the columns of accelerations; () if all values in file order are accelerations.
+
+    timed: True if the first column is a time. counted: True if the header states the number of values.
+    """
     side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MAX_RECORD_COLUMNS
     if not timed and (counted or not side_by_side):
         return ()
@@ -212,7 +226,12 @@ def _read_rows(
 def _column_values(
     rows: Sequence[tuple[int, list[float]]], column: int | None, counted: bool, propose: Callable[[], str]
 ) -> list[float]:
-    """Return values in `column` (first: 1); for 0 or None, all in file order. Raises RecordError for unfit lines."""
+    """
+    Return the values in column `column`, from 1, or all in file order for 0 or None. Raises RecordError.
+
+    rows: line number and numbers of each line. counted: True if the header states how many values there are. propose:
+    returns the end of the error, which says what to write.
+    """
     if column:
         for number, row in rows:
             if len(row) < column:
@@ -225,7 +244,7 @@ def _column_values(
 def _check_widths(
     rows: Sequence[tuple[int, list[float]]], column_unstated: bool, counted: bool, propose: Callable[[], str]
 ) -> None:
-    """Raise RecordError if lines of a text without stated column may be table rows, or lines differ in length."""
+    """Raise RecordError if the lines may be rows of a table whose column is not stated, or if they differ in length."""
     widths = [len(row) for _, row in rows]
     alike = len(set(widths)) == 1 and widths[0] > 1
     if column_unstated and alike and _even_step([row for _, row in rows]) is not None:
@@ -251,7 +270,7 @@ def _check_stated_count(header: Sequence[str], count: int) -> None:
 
 
 def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
-    """Return the step of the first of several columns if it rises evenly, as a time does; None otherwise."""
+    """Return the mean step of the first of several columns if it rises evenly, as a time does; None otherwise."""
     if len(rows) < MIN_TIME_ROWS or min(map(len, rows)) < 2:
         return None
     steps: Array = np.diff([row[0] for row in rows])
