@@ -15,8 +15,8 @@ from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory
 
 FULL_LENGTH_OUTCOMES = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts the whole duration
-DURATION_TOLERANCE = 1e-9  # share of the duration: a rest counts as final if it ends this close to the end
-DECIMATION = 5  # n: the sampling error is the largest change of a value when only every n-th sample is used
+DURATION_TOLERANCE = 1e-9  # a rest counts as final if it ends within this fraction of the duration before its end
+DECIMATION = 5  # the sampling error is the largest change of a value if only every fifth sample is used
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,10 @@ class Estimate:
     reason: str = ""
 
 
-NEVER_RESTS = "never at rest: no dry friction"  # reason why a motion has no residual displacement
-MOVING_AT_END = "moving at the end: take a longer duration"  # reason why a motion has no residual displacement
-NOT_SAMPLED = "no samples of the last rest"  # reason why a motion has no residual displacement
+# Reasons why a motion has no residual displacement
+NEVER_RESTS = "never at rest: no dry friction"
+MOVING_AT_END = "moving at the end: take a longer duration"
+NOT_SAMPLED = "no samples of the last rest"
 UNKNOWN_ESTIMATE = Estimate(math.nan, math.nan)  # stands for any number of a motion that ended early
 
 
@@ -52,15 +53,19 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squared_lengths_and_interval_maxima(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return squared lengths (T,), m^2, of displacements `place` (T, 2), and maxima between instants, (T - 1,)."""
+    """
+    Return the squared lengths of displacements `place` (T, 2) at the instants, (T,), m^2, and between them, (T - 1,).
+
+    Between two instants it is the largest squared length if that lies inside, else the one at the later instant.
+    """
     # Between two instants the rate of half the squared length is taken as linear. Where the rate passes zero downward,
     # the length has a maximum: its square exceeds the squared length at the earlier instant by rate^2 over the fall of
     # the rate, times the interval.
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
-    turns = (before > 0.0) & (behind < 0.0)
-    rise = np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(time)
-    return square, np.where(turns, square[:-1] + rise, square[1:])
+    peaks = (before > 0.0) & (behind < 0.0)
+    rise = np.divide(before**2, before - behind, where=peaks, out=np.zeros_like(before)) * np.diff(time)
+    return square, np.where(peaks, square[:-1] + rise, square[1:])
 
 
 class DemandSamples(NamedTuple):
@@ -79,25 +84,34 @@ class DemandSamples(NamedTuple):
     @staticmethod
     def from_motion(motion: Trajectory) -> DemandSamples:
         """Return the samples of a motion: instants and histories; a history is empty where the motion has none."""
-        moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
         support = motion.support_force
-        uplift = motion.extra.get("uplift", np.zeros_like(support))
         return DemandSamples(
-            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift,
-            motion.absolute_acceleration[:, :, :2],
-        )  # fmt: skip
+            time=motion.time,
+            place=motion.position[:, :, :2],
+            velocity=motion.velocity[:, :, :2],
+            isolator=motion.isolator_force,
+            contact=motion.contact_force,
+            support=support,
+            rotation=motion.vertical_rotation,
+            uplift=motion.extra.get("uplift", np.zeros_like(support)),
+            acceleration=motion.absolute_acceleration[:, :, :2],
+        )
 
     def split_into_subsamples(self) -> list[DemandSamples]:
         """Return DECIMATION sets of samples: each takes every fifth sample and starts with another one."""
         firsts = range(min(DECIMATION, len(self.time)))
-        return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
+        return [DemandSamples(*(history[first::DECIMATION] for history in self)) for first in firsts]
 
     def largest_length(self, place: Array, velocity: Array) -> float:
         """Return the largest length, m, of the displacement `place` (T, 2), also between the samples."""
         return largest_displacement(self.time, place, velocity)
 
     def residual_and_creep(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
-        """Return the displacement at the start of the last rest, and the total distance of creep in all rests, m."""
+        """
+        Return the displacement at the start of the last rest, and the sum of the distances crept during all rests, m.
+
+        stick: start and end of every rest, s. A regularized law of friction lets the platform creep while it rests.
+        """
         place, creep, first = self.place[:, 0], 0.0, 0
         for begin, end in stick:
             first = int(np.searchsorted(self.time, begin))
@@ -111,10 +125,15 @@ ReadNumbers = Callable[[DemandSamples], Sequence[float]]  # function that reads 
 
 
 class DemandReader:
-    """Reader of peaks, energies and counts of a motion, with errors from fewer samples and from less accurate runs."""
+    """
+    Reader of peaks, energies and counts of a motion, with their errors.
+
+    An error is the sum of the sampling error, from subsets of the samples, and of the solution's, from less accurate
+    runs of the same motion.
+    """
 
     def __init__(self, motion: Trajectory) -> None:
-        """Take the samples of the motion, its subsets of every DECIMATION-th, and samples of less accurate runs."""
+        """Take the samples of the motion, subsets of every DECIMATION-th of them, and samples of less accurate runs."""
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in FULL_LENGTH_OUTCOMES and len(motion.time) > 0
         self.samples = DemandSamples.from_motion(motion)
@@ -135,7 +154,7 @@ class DemandReader:
         decimated, coarser = ([read(samples) for samples in each] for each in (self.decimated, self.coarser))
         estimates = []
         for n, value in enumerate(values):
-            sampling = max(abs(part[n] - value) for part in decimated)
+            sampling = max(abs(subset[n] - value) for subset in decimated)
             estimates.append(Estimate(value, sampling + self._solution_error(value, [other[n] for other in coarser])))
         return tuple(estimates)
 
@@ -165,7 +184,8 @@ class DemandReader:
             return UNKNOWN_ESTIMATE
         (energy, *coarser), decimated = self._energies
         value = read(energy)
-        sampling = max(abs(read(part) - value) for part in decimated) / (DECIMATION - 1)
+        # the error of the trapezoidal rule grows at least like the spacing
+        sampling = max(abs(read(subset) - value) for subset in decimated) / (DECIMATION - 1)
         others = [read(other) for other in coarser]
         return Estimate(value, sampling + self._solution_error(value, others, energy.friction_energy()))
 
@@ -176,7 +196,7 @@ class DemandReader:
         return energies, energies[0].split_into_subsamples(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
-        """Return the number of events that `read` counts; error: largest difference from less accurate runs."""
+        """Return the number of events that `read` counts; its error is the largest difference to less accurate runs."""
         if not self.answered:
             return UNKNOWN_ESTIMATE
         value = read(self.motion)
@@ -191,5 +211,5 @@ class DemandReader:
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
     def _solution_error(self, value: float, others: list[float], scale: float | None = None) -> float:
-        """Return the numerical error of a value, from its values in less accurate runs; NaN without other runs."""
+        """Return the numerical error of a value from `others`, its values in less accurate runs; NaN without any."""
         return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)

@@ -11,28 +11,28 @@ from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # probabilities with which the fractiles are not exceeded
-# Sampling error as a multiple of the largest difference from grids of twice the spacing. On the built-in scenes of the
-# paper, grids of 8 to 64 phases per axis had errors against 256 phases of at most 1.6 differences in 336 values.
+# The sampling error is this factor times the largest difference from grids of twice the spacing. For 336 values of the
+# built-in scenes, the errors of grids of 8 to 64 phases per axis, against 256 phases, were at most 1.6 differences.
 SAMPLING_FACTOR = 2.0
 
 
 def fractile(values: ArrayLike, probability: float) -> float:
     """
-    Return the value below which a share `probability` of M values lies; the order of the values does not matter.
+    Return the value below which the fraction `probability` of M values lies; the order of the values does not matter.
 
-    The fractile is linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (plotting positions of
-    Hazen, Trans. ASCE 77, 1914), and the smallest or largest value beyond these. Values may be infinite: the fractile
-    between infinite ones of both signs is NaN.
+    The k-th smallest value has the probability (k - 1/2)/M (plotting positions of Hazen, Trans. ASCE 77, 1914). The
+    fractile is linear between these, and the smallest or largest value beyond them. Values may be infinite: the
+    fractile between infinite ones of both signs is NaN.
 
     >>> fractile([4.0, 1.0, 2.0, 3.0], 0.5), fractile([4.0, 1.0, 2.0, 3.0], 0.84)
     (2.5, 3.86)
     """
     ordered = np.sort(np.asarray(values, dtype=float), axis=None)
     place = min(max(probability * len(ordered) - 0.5, 0.0), len(ordered) - 1.0)
-    low, share = int(place), place - int(place)
-    if share == 0.0 or ordered[low] == ordered[low + 1]:
+    low, weight = int(place), place - int(place)
+    if weight == 0.0 or ordered[low] == ordered[low + 1]:
         return float(ordered[low])
-    return float((1.0 - share) * ordered[low] + share * ordered[low + 1])
+    return float((1.0 - weight) * ordered[low] + weight * ordered[low + 1])
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class PhaseDistribution:
     points : int
         Number of phase pairs.
     unknown : float
-        Share of phase pairs without an answer.
+        Fraction of phase pairs without an answer.
     """
 
     mean: Estimate
@@ -74,8 +74,9 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
 
     Notes
     -----
-    Sampling error: twice the largest difference to the four grids of twice the spacing that the grid consists of. Pairs
-    without an answer count once as larger and once as smaller than all others. The mean has no such bound.
+    The sampling error is twice the largest difference to the four grids of twice the spacing that the grid consists of.
+    For the error of a fractile, pairs without an answer count once as larger and once as smaller than all others. The
+    mean has no such bound: its error is NaN if an answer is missing.
 
     Examples
     --------
@@ -110,5 +111,8 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
         return Estimate(value, total if np.isfinite(total) else float("nan"))
 
     return PhaseDistribution(
-        estimate_mean(), tuple(map(estimate_fractile, FRACTILES)), values.size, float(1.0 - known.mean())
+        mean=estimate_mean(),
+        fractiles=tuple(map(estimate_fractile, FRACTILES)),
+        points=values.size,
+        unknown=float(1.0 - known.mean()),
     )

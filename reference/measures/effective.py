@@ -16,7 +16,7 @@ from reference.support.constants import GRAVITY
 @dataclass(frozen=True)
 class EffectiveIsolator:
     """
-    Effective stiffness, period, damping and re-centering of the isolator for amplitudes D, arrays of the shape of D.
+    Effective stiffness, period, damping and re-centering of the isolator at amplitudes D; arrays have the shape of D.
 
     Attributes
     ----------
@@ -81,12 +81,13 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
     # friction force over weight: elastic, in proportion to the displacement, until it reaches the sliding friction
     friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)
+    # energy lost per cycle over 4 W D: mu (1 - u_y / D), with the yield displacement u_y = mu W / k
     dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
     stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):
         return EffectiveIsolator(
-            stiffness,
-            2.0 * np.pi * np.sqrt(scene.total_mass / stiffness),
-            2.0 / np.pi * np.maximum(dissipating, 0.0) / (friction + slope),
-            slope / largest,
+            stiffness=stiffness,
+            period=2.0 * np.pi * np.sqrt(scene.total_mass / stiffness),
+            damping=2.0 / np.pi * np.maximum(dissipating, 0.0) / (friction + slope),
+            restoring=slope / largest,
         )

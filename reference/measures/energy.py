@@ -15,11 +15,11 @@ class Energy(NamedTuple):
     """Powers and stored energies at T instants; NaN where the motion does not determine them."""
 
     time: Array  # (T,) s
-    friction: Array  # (T,) W, power of friction: dissipated, except for the part that its elastic deformation stores
+    friction: Array  # (T,) W, power of friction, dissipated except for what goes into `sheared`
     dampers: Array  # (T,) W, power that the dampers of the links dissipate
     ground: Array  # (T,) W, power of inertial forces on the motion relative to the ground
     stored: Array  # (T,) J, kinetic, elastic and gravitational energy of the bodies
-    sheared: Array  # (T,) J, elastic energy of friction that is elastic before it slides; a part of its work
+    sheared: Array  # (T,) J, energy that friction stores which is elastic before it slides; 0 for rigid friction
 
     def friction_energy(self) -> float:
         """Return the energy that friction has dissipated by the end of the motion, J."""
@@ -38,11 +38,15 @@ class Energy(NamedTuple):
         """Return `step` subsamples: each has every `step`-th instant, from another start, and both end instants."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
-        return [Energy(*(part[rows] for part in self)) for rows in kept]
+        return [Energy(*(history[rows] for history in self)) for rows in kept]
 
 
 def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> Array:
-    """Return the friction force, (T, 3), N: the force on all bodies less the normal force of the contact."""
+    """
+    Return the friction force on the platform, (T, 3), N: the force of the contact on all bodies less its normal force.
+
+    place: (T, 3), m, of the platform. total: (T, N, 3), m/s^2, absolute accelerations. contact: (T,), N, normal force.
+    """
     force = np.einsum("i,tia->ta", scene.masses, total)
     force[:, 2] += scene.total_mass * GRAVITY
     normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
@@ -51,7 +55,11 @@ def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> 
 
 
 def compute_energy(motion: Trajectory) -> Energy:
-    """Return powers and stored energies of a motion; where bodies turn, all but the power of friction are NaN."""
+    """
+    Return powers and stored energies of a motion.
+
+    If bodies turn, what needs their rotation is NaN: stored energy and the powers of the ground and of the dampers.
+    """
     # Motions by the small-displacement equations have no height. Their restoring force is a paraboloid's: its height
     # p^2 / 2 rho and its slope take part in the energies of gravity and of the vertical ground motion.
     scene, place, velocity = motion.scene, motion.position, motion.velocity
@@ -72,4 +80,11 @@ def compute_energy(motion: Trajectory) -> Energy:
     if scene.dry_friction.elastic:
         force = friction_force(scene, place[:, 0], motion.absolute_acceleration, motion.contact_force)
         sheared = (force**2).sum(axis=1) / (2.0 * scene.dry_friction.stiffness)
-    return Energy(motion.time, motion.friction_power, dampers, ground, stored, sheared)
+    return Energy(
+        time=motion.time,
+        friction=motion.friction_power,
+        dampers=dampers,
+        ground=ground,
+        stored=stored,
+        sheared=sheared,
+    )

@@ -15,10 +15,11 @@ MAX_STARTS = 12  # largest number of local maxima from which searches start: tho
 
 def find_local_maxima(surface: Array, scene: Scene) -> Array:
     """
-    Return loading phases (K, 2), rad, at which amplification or displacement is not below any of 8 neighbors on a grid.
+    Return the phase pairs (K, 2), rad, at which a surface is not lower than at any of 8 neighbors on a grid.
 
-    `surface` is (n, n), on `phase_grid(n)`; NaN without an answer. Pairs that may rise highest come first, at most
-    MAX_STARTS of them, and only one of those that a symmetry of the motion makes equal.
+    surface: amplification or displacement (n, n) on `phase_grid(n)`; NaN without an answer. At most MAX_STARTS pairs
+    are returned, and only one of those that a symmetry of the motion makes equal. Those next to which the surface may
+    rise highest come first.
 
     >>> from reference.problem import load_scene
     >>> alpha = 2.0 * np.pi * np.arange(8) / 8
@@ -32,5 +33,6 @@ def find_local_maxima(surface: Array, scene: Scene) -> Array:
     places = np.flatnonzero(np.isfinite(height) & (height >= np.max(around, axis=0)))
     places = places[indices_of_solved_pairs(scene, points)[places] == places]
     high, low = height.ravel()[places], lowest.ravel()[places]
+    # The maximum between the grid points may exceed the highest of them by about half the range in its neighborhood.
     may_reach = high + 0.5 * (high - low)
     return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_STARTS]]

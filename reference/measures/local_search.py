@@ -37,16 +37,16 @@ INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5
 MAX_GOOD_PREDICTION_ERROR = 0.1
 FAST_SHRINKING, SLOW_SHRINKING = 0.2, 0.6  # factors on a search region's half width after a good and a poor prediction
 # A search ends if its best value lies below that of the highest search by more than PROMISE_FACTOR times the range of
-# values in its square, or by more than GAIN_FACTOR times what its LATEST_ROUNDS rounds gained: next to a jump even a
-# small square has a large range.
-PROMISE_FACTOR = 2.0  # a search ends if its best value is below the highest by more than this times its square's range
-LATEST_ROUNDS, GAIN_FACTOR = 6, 10.0  # rounds, and factor on a search's gain in them: it ends if below the best by more
+# values in its square, or by more than GAIN_FACTOR times what it gained in its last LATEST_ROUNDS rounds. The gain
+# counts, too, because next to a jump even a small square has a large range.
+PROMISE_FACTOR, LATEST_ROUNDS, GAIN_FACTOR = 2.0, 6, 10.0
 MAX_MERGED_WIDTH = 0.04  # rad: two searches within one square of at most this half width have found the same maximum
 JUMP_SEARCH_HALF_WIDTH = 0.07  # rad, half width of the first square of phases in which a jump of a surface is followed
-JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # numbers: squares of phases in which a jump is followed, ever finer grids in each
+JUMP_ROUNDS, JUMP_REFINEMENTS = 2, 5  # number of squares in which a jump is followed, and of ever finer grids in each
 FALL_DIRECTIONS = 32  # number of directions in which the fall of the surface from a maximum is computed
 FAR_DISTANCE, NEAR_DISTANCE = 1e-3, 1e-4  # rad, distances from the maximum at which the fall is computed
-# Ratio of falls at NEAR_ and FAR_DISTANCE above which a maximum is a kink, a jump (parabola 0.01, edge 0.1, jump 1)
+# Ratios of the falls at NEAR_DISTANCE and FAR_DISTANCE above which a maximum is a kink and a jump. The ratio is 0.01
+# for a parabola, 0.1 for an edge and 1 for a jump.
 KINK_FALL, JUMP_FALL = 0.03, 0.3
 CLEAR_FALL = 10.0  # a fall shows the kind of a maximum if it is larger than this times the value's error
 
@@ -67,7 +67,12 @@ class ComputedPhases:
 
     def select(self, places: slice) -> ComputedPhases:
         """Return the values at a slice of the M phase pairs."""
-        return ComputedPhases(self.phases[places], self.numerator[places], self.denominator[places], self.error[places])
+        return ComputedPhases(
+            phases=self.phases[places],
+            numerator=self.numerator[places],
+            denominator=self.denominator[places],
+            error=self.error[places],
+        )
 
 
 @dataclass
@@ -93,16 +98,15 @@ class Surface:
         self.outcome = next((str(status) for status in result.status[::-1] if status != Outcome.OK.value), self.outcome)
         denominator = self.denominator(phases)
         if self.quantity == "amplification":
-            return ComputedPhases(
-                phases, result.mu[:, self.body] * denominator, denominator, result.error[:, self.body]
-            )
-        error = DISPLACEMENT_ERROR * result.displacement
-        return ComputedPhases(phases, result.displacement, denominator, error)
+            numerator, error = result.mu[:, self.body] * denominator, result.error[:, self.body]
+        else:
+            numerator, error = result.displacement, DISPLACEMENT_ERROR * result.displacement
+        return ComputedPhases(phases=phases, numerator=numerator, denominator=denominator, error=error)
 
 
 @dataclass(eq=False)
 class LocalSearch:
-    """Search for the largest amplification or displacement: best phase pair so far, square of phases to try next."""
+    """State of one search for a local maximum: the best phase pair so far, and the square of phases to try next."""
 
     phases: Array  # (2,), rad, best phase pair so far
     value: float
@@ -142,7 +146,7 @@ def make_square_nodes(nodes: int) -> tuple[Array, Array]:
 
 
 def advance_searches(surface: Surface, searches: Sequence[LocalSearch]) -> None:
-    """Advance searches one round: compute values in each one's square of two phases, then at the predicted maximum."""
+    """Advance searches by one round, which computes values in the square of each and at the maximum predicted there."""
     # All searches share two calls of the solver, which computes their pairs in parallel. A prediction is good if the
     # value computed at the predicted pair agrees with the polynomial: then the square shrinks fast, otherwise slowly
     # and with more nodes. A search ends where neither the values of its square nor the prediction differ by more than
@@ -178,16 +182,15 @@ def predict_best(surface: Surface, search: LocalSearch, square: ComputedPhases) 
     nodes = math.isqrt(len(numerator))
     coefficients = (make_square_nodes(nodes)[1] @ numerator).reshape(nodes, nodes)
 
-    def predicted_amplification(first: Array, second: Array) -> Array:
-        """Return interpolated displacement, or acceleration over exact ground peak, at a square's places in [-1, 1]."""
+    def predicted_value(first: Array, second: Array) -> Array:
+        """Return the interpolated numerator over the exact denominator at coordinates in [-1, 1] of the square."""
         phases = search.phases + search.half_width * np.stack([first, second], axis=-1)
         denominator = surface.denominator(phases.reshape(-1, 2)).reshape(first.shape)
         values: Array = chebyshev.chebval2d(first, second, coefficients) / denominator
         return values
 
-    place, value = _maximize_on_square(
-        predicted_amplification, [COARSE_COORDINATES, *[FINE_COORDINATES] * (QUOTIENT_GRIDS - 1)]
-    )
+    grids = [COARSE_COORDINATES, *[FINE_COORDINATES] * (QUOTIENT_GRIDS - 1)]
+    place, value = _maximize_on_square(predicted_value, grids)
     return search.phases + search.half_width * place, value
 
 
@@ -196,7 +199,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids:
     Return the point (2,) of the square [-1, 1]^2 with the largest value of a function, and this value.
 
     offset_grids: coordinates in [-1, 1] to try around the best point, on one grid after another, each scaled to the
-    spacing of the grid before.
+    spacing of the grid before. For every first coordinate the best second one is found, and then the best first one.
     """
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
@@ -219,7 +222,7 @@ def _maximize_on_square(function: Callable[[Array, Array], Array], offset_grids:
 
 
 def follow_jump(surface: Surface, search: LocalSearch) -> None:
-    """Move a search at a jump of the quantity over phases to the largest value along it, without interpolation."""
+    """Move a search that ended next to a jump of the surface to the largest value along the jump."""
     # The polynomial of a square fails across a jump. So the maximum over the second phase is taken for each first one,
     # on ever finer grids of computed values, and then the maximum over the first phase: a ridge of any direction
     # is followed. The square is centered anew and made ten times smaller once.
@@ -239,12 +242,16 @@ def follow_jump(surface: Surface, search: LocalSearch) -> None:
     search.history.append((half_width, search.value))
 
 
-def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSearch]:
-    """Return searches, one for each maximum; shifted: shifts of phases, (K, 2), rad, that keep the surface equal."""
+def merge_searches(searches: list[LocalSearch], shifts: Array) -> list[LocalSearch]:
+    """
+    Return the searches without those that are at the same maximum as a higher one.
+
+    shifts: (K, 2), rad, shifts of both phases that leave the surface the same; two maxima apart by one are the same.
+    """
     kept: list[LocalSearch] = []
     for search in sorted(searches, key=lambda search: -search.value):
         for higher in kept:
-            apart = search.phases + shifted - higher.phases
+            apart = search.phases + shifts - higher.phases
             apart = np.abs(np.remainder(apart + np.pi, 2.0 * np.pi) - np.pi).max(axis=1).min()
             width = max(search.half_width, higher.half_width, MIN_HALF_WIDTH)
             if apart <= width <= MAX_MERGED_WIDTH:
@@ -256,7 +263,11 @@ def merge_searches(searches: list[LocalSearch], shifted: Array) -> list[LocalSea
 
 
 def classify_maximum(surface: Surface, search: LocalSearch) -> tuple[str, tuple[float, float]]:
-    """Return "jump", "kink" or "smooth" for a maximum, and the direction from a jump to its high side."""
+    """
+    Return "jump", "kink" or "smooth" for the shape of the surface at a maximum.
+
+    For a jump also the direction (unit vector in the plane of the phases) to its high side, otherwise (NaN, NaN).
+    """
     # The surface falls from its maximum like the square of the distance where it is smooth, like the distance at an
     # edge, and at once beyond a jump. The ratio of the falls at a near and a far distance distinguishes them, in any of
     # FALL_DIRECTIONS. A fall within a few errors of the value shows nothing. The high side of a jump is the mean of the

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demand of each body: index of the first body that has it
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies, with the index of the first that has it
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("residual displacement of the isolator", "m"),
@@ -59,7 +59,7 @@ class Estimates:
     Attributes
     ----------
     value : ndarray, (...) or (..., K)
-        In the shape of the phase pairs, of K bodies or links. NaN without an answer.
+        In the shape (...) of the phase pairs, and for a demand of bodies or links for K of them. NaN without an answer.
     error : ndarray, of the shape of `value`
         Estimated absolute error; NaN where it is not known.
     """
@@ -73,7 +73,7 @@ class PeakDemands(Mapping[str, Estimates]):
     """
     Demands on isolator and structure at many pairs of initial phases of the loading, the result of `peak_demands`.
 
-    A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model does not have.
+    A mapping from the names of the fields of `Demands` to `Estimates`, without fields that the model does not have.
 
     Attributes
     ----------
@@ -150,7 +150,11 @@ class PeakDemands(Mapping[str, Estimates]):
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
-    """Return demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN for a missing motion."""
+    """
+    Return the demands at phase pairs (..., 2), rad; NaN at a pair without a motion.
+
+    move: function that computes the motion of the scene for one phase pair.
+    """
     pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
@@ -164,11 +168,21 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
     for name, table in _stack_answers(answers).items():
         values, errors = np.moveaxis(table.reshape((*shape, *table.shape[1:])), -1, 0)
         stacked[name] = Estimates(values, errors)
-    return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost, pairs.reshape(*shape, 2))
+    return PeakDemands(
+        estimates=stacked,
+        status=status.reshape(shape),
+        instant=instant.reshape(shape),
+        cost=cost,
+        phases=pairs.reshape(*shape, 2),
+    )
 
 
 def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
-    """Return for each demand an array over all motions: value and error on the last axis, NaN if a motion lacks it."""
+    """
+    Return an array for each demand: (M, 2), or (M, K, 2) for a demand of K bodies or links, over M motions.
+
+    The last axis is (value, error), NaN if a motion lacks the demand.
+    """
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
         tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]

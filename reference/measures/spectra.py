@@ -100,7 +100,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     series = _power_series(damping)
 
     def spectra(motion: Trajectory, first: int = 0, every: int = 1) -> Array:
-        """Return floor spectra of a motion from the samples `first`, `first` + `every`, ... and both end samples."""
+        """Return floor spectra (N, 2, P) from the samples `first`, `first` + `every`, ... and both end samples."""
         last = len(motion.time) - 1
         kept = np.arange(last + 1) % every == first
         kept[[0, last]] = True
@@ -236,12 +236,14 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
     """
     Return the largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors with acceleration (T, C), m/s^2.
 
-    y'' + 2 damping y' + y = -floor, with y the displacement times the square of the natural frequency and derivatives
-    by the angle. `series` is that of `_power_series`.
+    The equation is y'' + 2 damping y' + y = -floor. y is the displacement times the square of the natural frequency,
+    and derivatives are by the phase angle omega t. time: (T,), s. period: (P,), s. series: as `_power_series` returns.
     """
     # The first loop over the intervals computes the matrices of their steps, which depend on the lengths alone, so that
     # no interval waits for the motion in the one before. The second loop follows the motion. An interval between two
     # samples is cut into equal steps of MAX_ANGLE at most.
+    # At the end of a step, b is the motion from rest under a unit impulse, s under a constant 1, and r under a ramp up
+    # to 1. The speeds under these are d, b and f.
     count, total = floor.shape[1], time.shape[0] - 1
     largest = np.zeros((count, period.shape[0]))
     place, speed = np.zeros(count), np.zeros(count)
@@ -262,10 +264,10 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
         place[:], speed[:] = 0.0, 0.0
         for n in range(total):
             b, f, r, s, d, angle = motion[n]
-            share = 1.0 / steps_of[n]
+            fraction = 1.0 / steps_of[n]
             for k in range(int(steps_of[n])):
                 for i in range(count):
-                    change = share * (floor[n + 1, i] - floor[n, i])
+                    change = fraction * (floor[n + 1, i] - floor[n, i])
                     y, v = place[i], speed[i]
                     pulled = y + floor[n, i] + k * change
                     y1 = y - s * pulled + b * v - r * change
@@ -281,12 +283,13 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
 
 def _power_series(damping: float) -> Array:
     """
-    Return coefficients (SERIES_TERMS, 3), lowest first, of oscillator motion from rest in powers of the angle omega t.
+    Return coefficients (SERIES_TERMS, 3), lowest first, of the motion of an oscillator from rest in powers of omega t.
 
-    Columns: motion under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp
-    up to 1, over the square of the angle. All motions of a step are sums of these. The k-th derivative at the start of
-    the motion under a constant is f_k: 0, 0, 1, and then -2 damping f_(k-1) - f_(k-2). The motion under the impulse is
-    the derivative of that under the constant; the one under the ramp is its integral over the angle.
+    The columns are the motion under a unit impulse, divided by the angle omega t; under a constant 1, divided by the
+    square of the angle; and under a ramp up to 1, divided by the square of the angle. All motions in a step are sums of
+    these. Under the constant, the derivatives at the start are f_0 = f_1 = 0, f_2 = 1 and then
+    f_k = -2 damping f_(k-1) - f_(k-2). The motion under the impulse is the derivative of that under the constant; the
+    one under the ramp is the integral of that under the constant, divided by the angle.
     """
     derivatives = [0.0, 1.0]
     for _ in range(SERIES_TERMS - 1):

@@ -24,7 +24,7 @@ class StoryForces:
     Attributes
     ----------
     shear : tuple of Estimate, (N,), N
-        Horizontal force below every body; the first is that of the isolator.
+        Horizontal force in the story below every body; the first is that of the isolator.
     moment : tuple of Estimate or None, (N,), N m
         Overturning moment below every body: about the body below it, the first about the sliding contact. None where
         the scene does not state the heights of all bodies.
@@ -33,8 +33,8 @@ class StoryForces:
     uplift : tuple of Estimate or None, (K,), m
         Largest gap of every support. None where the model has no single supports.
     shear_along, moment_along : tuple of tuple of Estimate, (2, N)
-        Sizes of `shear` and `moment` along x and y, the moment that of the forces along that axis. Moments are None
-        as above.
+        Largest components of shear and moment along x and y; the moment is that of the forces along that axis. Moments
+        are None as above.
     drift_along : tuple of tuple of Estimate, (2, N - 1), m
         Largest displacement of every body relative to the one below along x and y.
     """
@@ -70,9 +70,10 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     of the bodies. The moment leaves out the inertia of turning bodies and the weight times the drift.
 
     The spatial model has forces of its own at every support. Any other model has the normal force of the whole
-    isolator. Equally stiff supports under a stiff platform carry it, the moment and the weight that is displaced as
-    N_k = c0 + c1 x_k + c2 y_k: this is statics, and negative where a support would lift off. While all stay closed it
-    is within half a percent of the spatial model in the tests.
+    isolator. Its supports are taken as equally stiff under a stiff platform, so that their forces, by statics, are
+    N_k = c0 + c1 x_k + c2 y_k in balance with that normal force, the moment and the displaced weight. A force is
+    negative where a support would lift off. While all stay closed, the forces are within half a percent of the spatial
+    model in the tests.
 
     Examples
     --------
@@ -127,7 +128,11 @@ def _depression_radius(scene: Scene) -> float:
 def _read_supports(
     read: DemandReader, values: Callable[[DemandSamples], Array], count: int
 ) -> tuple[tuple[Estimate, ...], tuple[Estimate, ...]]:
-    """Return the smallest values over time of each of `count` supports, and the largest, with errors."""
+    """
+    Return the smallest value over time of each of `count` supports, and the largest of each, with errors.
+
+    values: function that reads a quantity of all supports, (T, count), from samples.
+    """
 
     def ends(samples: DemandSamples) -> list[float]:
         """Return the smallest values of all supports over time, then the largest."""
@@ -139,7 +144,11 @@ def _read_supports(
 
 
 def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterator[tuple[Estimate, ...]]:
-    """Iterate over maxima over time: magnitudes of all vectors, their x components, their y components, with errors."""
+    """
+    Iterate over three tuples of maxima over time with errors, each with one entry for every vector.
+
+    The first tuple has the largest magnitudes, the second and the third the largest components along x and y.
+    """
 
     def sizes(vector: ReadVectors) -> tuple[Estimate, ...]:
         """Return the largest magnitude of a vector over time and its largest x and y components, with errors."""
@@ -150,18 +159,26 @@ def _read_vectors(read: DemandReader, vectors: Sequence[ReadVectors]) -> Iterato
 
 
 def _force_below(weights: Array, body: int) -> ReadVectors:
-    """Return a function that sums acceleration times `weights` (kg or kg m) over a body and all above it, (T, 2)."""
+    """
+    Return a function that reads the sum of weight times acceleration over a body and all bodies above it, (T, 2).
+
+    weights: masses of these bodies, kg, for the shear below the body; masses times heights, kg m, for the moment.
+    """
     return lambda samples: np.einsum("i,tia->ta", weights, samples.acceleration[:, body:])
 
 
 def _arms_below(scene: Scene, heights: Array, body: int) -> Array:
-    """Return mass times height of a body and of all above it, kg m; heights from the body below, or the contact."""
+    """
+    Return mass times height, kg m, of a body and of every body above it.
+
+    Heights count from the center of mass of the body below, for the platform from the sliding contact.
+    """
     arms: Array = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
     return arms
 
 
 def _drift_above(link: int) -> ReadVectors:
-    """Return a function for the displacement (T, 2), m, of the body above a link relative to the body below it."""
+    """Return a function that reads the displacement (T, 2), m, of the body above a link relative to the one below."""
     return lambda samples: samples.place[:, link + 1] - samples.place[:, link]
 
 
@@ -179,11 +196,12 @@ def support_loads_at_rest(scene: Scene) -> Array | None:
 
 def _support_forces_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
     """
-    Return a function for forces (T, K), N, of equally stiff supports in balance with the normal force and the moment.
+    Return a function that computes the forces of the supports, (T, K), N, from samples, by statics.
 
-    The spheres stay with the ground and the depressions go with the platform. So the weight acts beside the middle of
-    the supports by the eccentricity of the mass, by R / rho times the platform's displacement, since the normals lean,
-    and by the mean drift of the floors.
+    The supports are equally stiff, and in balance with the normal force of the isolator and the overturning moment. The
+    spheres stay with the ground, and the depressions go with the platform. Therefore the weight acts beside the middle
+    of the supports. The distance is the sum of the eccentricity of the masses, the mean drift of the floors, and
+    R / rho times the platform's displacement, as the normals of the contacts lean.
     """
     middle = places.mean(axis=0)
     arms = places - middle
