@@ -19,9 +19,9 @@ from reference.support.arguments import name_some
 
 # Number of modes along each axis in a description; of a tall chain only the lowest modes are computed
 MAX_DESCRIBED_MODES = 10
-MAX_NAMES_PER_LINE = 6  # a line of the description lists at most so many values, or names of buildings
+MAX_NAMES_PER_LINE = 6  # largest number of values, or of names of buildings, in a line of the description
 EQUAL_LOAD_TOLERANCE = 1e-6  # largest difference of dead loads, over their mean, at which they count as equal
-MAX_KINDS = 3  # at most so many different buildings, or kinds of friction, are described one by one
+MAX_KINDS = 3  # largest number of different buildings, or of kinds of friction, that are described one by one
 
 
 @dataclass(frozen=True)
@@ -134,27 +134,31 @@ def describe_building(scene: Scene) -> Building:
     fixed = [_solve_fixed_base(scene, axis) for axis in range(2)]
     with np.errstate(divide="ignore"):
         return Building(
-            scene.name,
-            len(scene.bodies),
-            weight,
-            supports,
-            None if supports is None else weight / supports,
-            2.0 * np.pi / np.array(isolated),
-            2.0 * np.pi / np.array([frequency for frequency, _, _ in fixed]),
-            np.array([ratio for _, ratio, _ in fixed]),
-            np.array([share for _, _, share in fixed]),
-            largest_horizontal_acceleration(scene),
-            scene.radius,
-            (scene.friction_coefficient,) if scene.lubricated else (law.slow, law.fast, law.rate),
-            scene.isolator.travel,
-            None if places is None else np.ptp(places, axis=0),
-            heights_above_contact(scene),
-            support_loads_at_rest(scene),
+            name=scene.name,
+            bodies=len(scene.bodies),
+            weight=weight,
+            supports=supports,
+            load_per_support=None if supports is None else weight / supports,
+            isolated_period=2.0 * np.pi / np.array(isolated),
+            fixed_base_period=2.0 * np.pi / np.array([frequency for frequency, _, _ in fixed]),
+            modal_damping=np.array([ratio for _, ratio, _ in fixed]),
+            modal_mass=np.array([mass for _, _, mass in fixed]),
+            ground_peak=largest_horizontal_acceleration(scene),
+            radius=scene.radius,
+            friction=(scene.friction_coefficient,) if scene.lubricated else (law.slow, law.fast, law.rate),
+            travel=scene.isolator.travel,
+            support_extent=None if places is None else np.ptp(places, axis=0),
+            heights=heights_above_contact(scene),
+            support_loads=support_loads_at_rest(scene),
         )
 
 
 def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array, Array]:
-    """Return frequencies, damping ratios and mass shares, (L,), of the modes along one axis above a fixed platform."""
+    """
+    Return the frequencies, rad/s, damping ratios and relative effective masses, (L,), of the modes along one axis.
+
+    They are those of the bodies above a platform that is held. axis: 0 for x, 1 for y.
+    """
     if len(scene.bodies) == 1:
         return np.zeros(0), np.zeros(0), np.zeros(0)
     frequency, shape = solve_chain_modes(scene.masses[1:], scene.stiffness[:, axis], MAX_DESCRIBED_MODES)
@@ -170,13 +174,14 @@ def largest_horizontal_acceleration(scene: Scene) -> float:
         if scene.recorded:
             # Between samples the vector changes linearly, so its length is convex and largest at a sample.
             return float(np.hypot(*scene.record[:, 1:3].T).max())
-        # The length is convex in the cosines of both phases: take 1 or -1. Both harmonics are largest at the start.
+        # The length is convex in the cosines of both phases, so it is largest where each is 1 or -1. As both harmonics
+        # decay, they are largest at the start.
         first, second = scene.amplitudes[:2].T
         return float(max(np.hypot(*(first + second)), np.hypot(*(first - second))))
 
 
 def word_buildings(buildings: Sequence[Building]) -> list[str]:
-    """Return lines of text on buildings: one description for equal buildings, at most MAX_KINDS descriptions."""
+    """Return lines of text that describe buildings: equal ones together, and at most MAX_KINDS different ones."""
     alike: dict[str, list[Building]] = {}
     for building in buildings:
         alike.setdefault("\n".join(_word_structure(building)), []).append(building)
@@ -234,7 +239,7 @@ def _word_extent(extent: Array | None) -> str:
 
 
 def _word_frictions(buildings: Sequence[Building]) -> list[str]:
-    """Return sentences on the friction of buildings: a line for each of a few kinds, or the ranges over all."""
+    """Return lines on the friction of buildings: one for each of at most MAX_KINDS kinds, or the ranges over all."""
     alike: dict[tuple[float, ...], list[str]] = {}
     for building in buildings:
         alike.setdefault(building.friction, []).append(building.name)
@@ -247,7 +252,11 @@ def _word_frictions(buildings: Sequence[Building]) -> list[str]:
 
 
 def _word_friction(kinds: Sequence[tuple[float, ...]]) -> str:
-    """Return the coefficients of one kind of friction, or their ranges over several kinds, as text."""
+    """
+    Return the coefficients of one kind of friction, or their ranges over several kinds, as text.
+
+    kinds: (slow, fast, rate) of dry friction or (lubrication,), as `Building.friction`.
+    """
     dry = [kind for kind in kinds if len(kind) > 1]
     lubricated = [kind[0] for kind in kinds if len(kind) == 1]
     words = [f"lubrication: {_word_range(lubricated)} s/m"] if lubricated else []

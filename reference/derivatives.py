@@ -1,4 +1,9 @@
-"""Derivatives by values of the scene of a quantity that either program computes, and its kinks near these values."""
+"""
+Derivatives of a computed quantity with respect to numbers in the scene, and its kinks near these numbers.
+
+The quantity is any number that the equations or the engine compute from a scene. A kink is a place where its slope
+jumps. In a stick-slip motion there are many, and a derivative holds up to the next one only.
+"""
 
 from __future__ import annotations
 
@@ -21,17 +26,19 @@ from reference.support.arguments import quote
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]  # function of a scene whose derivatives are computed
 
-STEP_SHARES = (1e-3, 4e-3, 1.6e-2)  # steps of central differences, over the varied scene value; twice each is used too
+# Steps of central differences, as fractions of the varied number of the scene; twice each step is used, too
+STEP_SHARES = (1e-3, 4e-3, 1.6e-2)
 FINITE_CHANGES = (-0.05, -0.01, 0.01, 0.05)  # relative changes of the scene value at which kinks are looked for
 RUNS_PER_KEY = 4 * len(STEP_SHARES) + len(FINITE_CHANGES)  # evaluations of the quantity for one varied scene value
-# A kink is looked for if the mean slope over a finite change differs from the derivative by at least this share of the
-# largest slope. Both differ by less for smooth quantities that vary as x^n up to n = 10, for changes of x by 5 %.
+# A kink is looked for if the mean slope over a finite change differs from the derivative by at least this fraction of
+# the largest slope. Smooth quantities that vary as x^n differ by less up to n = 10, for changes of x by 5 %.
 MIN_CONTRADICTION = 0.05
 MAX_HALVINGS = 12  # the interval that contains a kink is halved at most this many times
-KINK_WIDTH = 1e-4  # an interval around a kink is halved down to this share of the scene value
-# Share of a kink's change of slope, or of a jump, that must remain when its interval shrinks: a smooth curve keeps less
+KINK_WIDTH = 1e-4  # width, as a fraction of the scene value, down to which an interval around a kink is halved
+# Fraction of the change of slope, or of the jump, that must remain when the interval around a kink shrinks. It shrinks
+# with the interval for a smooth curve.
 MIN_REMAINING_SHARE = 0.25
-MIN_SHRINKING = 0.125  # a kink is found if its interval shrinks to this share of its first width; else errors hide it
+MIN_SHRINKING = 0.125  # largest last width of a kink's interval over its first; if it stays wider, errors hide a kink
 PROGRESS_AFTER = 2.0  # progress is printed if the runs take longer than this, s
 
 
@@ -52,9 +59,9 @@ class Sensitivity(Estimates):
         changed scene has no answer.
     reading : str
         Which reading of (5.1) the quantity has: "as integrated" or "literal supremum"; "both agree" without dry
-        friction; "not stated" by a quantity that does not say.
+        friction; "not stated" if the quantity does not say it.
     law : str
-        Law of friction of the quantity, and what its error leaves out; "" where it is not stated.
+        Law of friction of the quantity, and the effect of it that the error leaves out; "" where it is not stated.
     kink : Estimate
         Value of the key, within 5 % of `at`, at which the quantity has a kink or a jump; its error is half the interval
         in which it was found. NaN without one.
@@ -63,7 +70,7 @@ class Sensitivity(Estimates):
     jump : float
         Change of the quantity at `kink`. 0 at a kink.
     warning : str
-        What the derivative does not tell, in one line; "" where the finite changes agree with it.
+        One line on what the derivative does not tell, such as a kink; "" where the finite changes agree with it.
     """
 
     key: str
@@ -89,7 +96,7 @@ class Sensitivity(Estimates):
 
 
 class _ComputedQuantity(NamedTuple):
-    """Value and error of a quantity, with its friction law and definition of the peak acceleration in (5.1)."""
+    """Value and error of a quantity, with its reading of (5.1) and its friction law ("" if it does not state them)."""
 
     value: Array
     error: Array
@@ -172,7 +179,11 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
 
 
 class _ProgressLines:
-    """Printer of progress lines on standard error: one per key, with the time left, after PROGRESS_AFTER seconds."""
+    """
+    Printer of progress lines on standard error.
+
+    It prints one line for each key, with the time that is left, once PROGRESS_AFTER seconds have passed.
+    """
 
     def __init__(self, runs: int) -> None:
         """Start the clock; runs: number of evaluations of the quantity that are to come."""
@@ -231,7 +242,7 @@ class _VariedQuantity:
 def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
     """Return derivative and finite changes of the quantity, and a kink or jump if derivative and changes disagree."""
     derivative, middle = _differentiate_line(line), line.middle
-    moved = [line.value_or_nan_at(line.value * (1.0 + share)) for share in FINITE_CHANGES]
+    moved = [line.value_or_nan_at(line.value * (1.0 + relative)) for relative in FINITE_CHANGES]
     change = Estimates(
         np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
     )
@@ -247,10 +258,18 @@ def _find_sensitivity(line: _VariedQuantity) -> Sensitivity:
         warning = describe_kink(line.key, line.value, kink, slopes, jump)
     elif contradicted:
         warning = f"the mean slope over 5 % of {line.key} departs by {departure:.2g} from the derivative: no kink found"
-    agree = "both agree" if middle.law else "not stated"
-    about = middle.reading or agree, middle.law
     return Sensitivity(
-        derivative.value, derivative.error, line.key, line.value, change, *about, kink, slopes, jump, warning
+        value=derivative.value,
+        error=derivative.error,
+        key=line.key,
+        at=line.value,
+        change=change,
+        reading=middle.reading or ("both agree" if middle.law else "not stated"),
+        law=middle.law,
+        kink=kink,
+        slopes=slopes,
+        jump=jump,
+        warning=warning,
     )
 
 
@@ -272,10 +291,12 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
 
 def _differentiate_line(line: _VariedQuantity) -> Estimates:
     """Return the quantity's derivative by its key, from central differences with the step of the smallest error."""
+    # Differences over a step and over twice the step are extrapolated to the step zero (Richardson). The error is the
+    # sum of what the extrapolation changes, of a kink inside the step, and of the errors of the values over the step.
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
-        """Return the quantity's central difference, half its change of slope at the key's value, and error of both."""
+        """Return the central difference, half the change of slope at the value of the key, and the error of both."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
         return (
@@ -299,9 +320,12 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     """
     Return the element of the quantity whose finite changes contradict its derivative most, and by how much.
 
-    Returns the element of the flattened quantity at which a kink is to be looked for, None without one, the departure
-    of the mean slope over 5 % there, and whether it is larger than the errors.
+    Returned are the index, in the flattened quantity, of the element at which a kink is to be looked for (None if there
+    is none), the departure of its mean slope over 5 % from the derivative, and whether this is larger than the errors.
     """
+    # Rows are the steps of 1 % and 5 %, columns the elements of the quantity. An element is suspect if a mean slope
+    # departs from the derivative by more than the errors and MIN_CONTRADICTION of its largest slope (`excess`), or if
+    # the error of the derivative itself is larger than that (`uncertain`), as with a kink inside the step.
     steps = np.abs(value) * np.array(FINITE_CHANGES[len(FINITE_CHANGES) // 2 :])
     below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
     low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
@@ -323,7 +347,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
 
 
 class _QuantityAtValue(NamedTuple):
-    """One element of the quantity, which may be an array, with its error, where the varied key has the value `at`."""
+    """The chosen element of the quantity, with its error, where the varied key has the value `at`."""
 
     at: float
     value: float
@@ -331,31 +355,35 @@ class _QuantityAtValue(NamedTuple):
 
 
 class _Bracket(NamedTuple):
-    """Points below and above a kink or jump, with the slope of the quantity below the lower and above the upper one."""
+    """Interval of the key that contains a kink or jump of the quantity, with the slopes outside of it."""
 
     low: _QuantityAtValue
     high: _QuantityAtValue
-    below: float
-    beyond: float
+    below: float  # slope of the quantity below the lower end
+    beyond: float  # slope above the upper end
 
     @property
     def width(self) -> float:
-        """Distance between the two points, in the unit of the key."""
+        """Width of the interval, in the unit of the key."""
         return self.high.at - self.low.at
 
     @property
     def slope_change(self) -> float:
-        """Slope above the upper point minus slope below the lower point."""
+        """Slope above the upper end minus slope below the lower end."""
         return self.beyond - self.below
 
     @property
     def jump(self) -> float:
-        """Change of the quantity between both points, less the change by the mean of the slopes outside of them."""
+        """Change of the quantity over the interval, less the change that the mean of both slopes would make."""
         return self.high.value - self.low.value - 0.5 * (self.below + self.beyond) * self.width
 
 
 def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] | None:
-    """Return points around a kink or jump of element `place`, and the jump (0 at a kink); None if neither is clear."""
+    """
+    Return a small interval around a kink or jump, and the height of the jump (0 at a kink); None if neither is clear.
+
+    place: index of the element of the flattened quantity.
+    """
 
     def point(at: float) -> _QuantityAtValue:
         """Return the chosen element of the quantity where the key has the value `at`."""
@@ -373,9 +401,13 @@ def _locate_corner(line: _VariedQuantity, place: int) -> tuple[_Bracket, float] 
 
 
 def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _QuantityAtValue]) -> _Bracket | None:
-    """Return the two points around the largest change of slope of the quantity; None if errors explain the change."""
-    x, f, e = np.array(points).T
-    slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
+    """
+    Return the interval between known points around the largest change of slope; None if errors explain the change.
+
+    points: in order of rising `at`. point: function that computes the quantity at a value of the key.
+    """
+    x, f, e = np.array(points).T  # value of the key, quantity, its error
+    slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)  # of the intervals between points
     excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # change of slope between intervals, less errors
     node = 1 + int(excess.argmax())
     if not excess[node - 1] > 0.0:
@@ -387,11 +419,12 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
         high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
     below = slope[node - 2] if node > 1 else (low.value - f[0]) / (low.at - x[0])
     beyond = slope[node + 1] if node < len(points) - 2 else (f[-1] - high.value) / (x[-1] - high.at)
-    return _Bracket(low, high, float(below), float(beyond))
+    return _Bracket(low=low, high=high, below=float(below), beyond=float(beyond))
 
 
 def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue], enough: float) -> _Bracket | None:
     """Return the bracket halved to the width `enough`, or until errors hide the kink; None if a value is missing."""
+    # Of the two halves the one is kept whose slope departs more from the slope outside of it: the kink lies there.
     low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
         if high.at - low.at <= enough:
@@ -402,7 +435,8 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
             return None
         noise = (low.error + 2.0 * middle.error + high.error) / (middle.at - low.at)
         apart = max(abs(left - below), abs(right - beyond))
-        if apart <= noise < 0.1 * abs(beyond - below):  # each half's slope is that outside it: kink at the middle
+        # both halves have the slopes outside of them, within the errors: the kink is at the middle
+        if apart <= noise < 0.1 * abs(beyond - below):
             near = max(noise / abs(beyond - below) * (high.at - low.at), 0.5 * enough)
             low = _QuantityAtValue(middle.at - near, middle.value - below * near, middle.error)
             high = _QuantityAtValue(middle.at + near, middle.value + beyond * near, middle.error)
@@ -413,11 +447,11 @@ def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue]
             high, beyond = middle, right
         else:
             low, below = middle, left
-    return _Bracket(low, high, below, beyond)
+    return _Bracket(low=low, high=high, below=below, beyond=beyond)
 
 
 def _value_and_provenance(found: Any) -> _ComputedQuantity:
-    """Return value, error, definition of peak acceleration in (5.1), friction law from a user function's result."""
+    """Return the quantity that the user's function returned as `found`. Raises TypeError if it is of no known form."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     try:
@@ -426,7 +460,8 @@ def _value_and_provenance(found: Any) -> _ComputedQuantity:
         raise _word_refusal(found) from None
     if value.shape != error.shape or not value.size:
         raise _word_refusal(found)
-    return _ComputedQuantity(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
+    reading, law = getattr(parts[0], "reading", ""), getattr(parts[0], "law", "")
+    return _ComputedQuantity(value=value, error=error, reading=reading, law=law)
 
 
 def _value_and_error(found: Any, parts: Sequence[Any]) -> tuple[Any, Any]:

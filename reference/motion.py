@@ -31,8 +31,8 @@ from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 SAMPLES_PER_PERIOD = 64  # evenly spaced output instants per loading period (the shorter of the two), by default
 STEP_SAMPLES = 8000  # target number of output instants placed in steps of the solver; more if there are many steps
 MAX_SAMPLES = 200_000  # largest number of evenly spaced output instants, and of those placed in steps of the solver
-# Lower bound on the error of a peak, as a share of the tolerance: a closer agreement of two runs is accidental
-# (measured errors reach 0.2 of the tolerance)
+# Lower bound on the error of a peak, as a fraction of the tolerance: a closer agreement of two runs is accidental.
+# Measured errors reach 0.2 of the tolerance.
 MIN_ERROR_FRACTION = 1.0
 
 
@@ -95,7 +95,14 @@ def trajectory(
     law = describe_law(scene, regularization)
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)
-        no_run = _RecordedRun(Outcome.NON_FINITE_LOAD, 0.0, allocate_record(0, bodies), nothing, nothing, system)
+        no_run = _RecordedRun(
+            outcome=Outcome.NON_FINITE_LOAD,
+            instant=0.0,
+            record=allocate_record(0, bodies),
+            peak=nothing,
+            reading_error=nothing,
+            system=system,
+        )
         return replace(_sample_trajectory(scene, pair, system, no_run, asked), law=law)
     run = _record_run(system, pair, x, v, settings)
     motion = replace(_sample_trajectory(scene, pair, system, run, asked), law=law)
@@ -113,7 +120,10 @@ def trajectory(
     floor = MIN_ERROR_FRACTION * settings.tolerance + ROUNDING_ERROR
     error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
     coarser = _sample_trajectory(scene, pair, system, other, asked)
-    return replace(motion, accuracy=Accuracy(error + floor * run.peak, (coarser,), (DIFFERENCE_FRACTION,), floor))
+    accuracy = Accuracy(
+        peak_error=error + floor * run.peak, coarser=(coarser,), share=(DIFFERENCE_FRACTION,), floor=floor
+    )
+    return replace(motion, accuracy=accuracy)
 
 
 class _RecordedRun(NamedTuple):
@@ -130,7 +140,14 @@ class _RecordedRun(NamedTuple):
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
     """Return the run from initial displacements x, m, and velocities v, m/s, (N, 2), with the record of its steps."""
     run, record, system = record_run(x, v, system, phase, settings)
-    return _RecordedRun(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
+    return _RecordedRun(
+        outcome=OUTCOMES[int(run.code[0])],
+        instant=float(run.instant[0]),
+        record=record,
+        peak=run.value[0],
+        reading_error=run.error[0],
+        system=system,
+    )
 
 
 def _sample_trajectory(
@@ -163,14 +180,14 @@ def _sample_trajectory(
 
 
 def _friction_power(scene: Scene, place: Array, velocity: Array, motion: SampledMotion) -> Array:
-    """Return the power that friction dissipates, (T,), W."""
+    """Return the power that friction dissipates, (T,), W; place, velocity: (T, 3), m and m/s, of the platform."""
     force = friction_force(scene, place, motion.total, scene.masses[0] * motion.reaction)
     power: Array = -(force * velocity).sum(axis=1)
     return power
 
 
 def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
-    """Return an upper bound on the accelerations that an initial state causes, m/s^2."""
+    """Return an upper bound on the accelerations, m/s^2, that an initial state x, m, and v, m/s, (N, 2), causes."""
     gravity = system.mass_ratio * system.gravity
     links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
     links += 2.0 * ((system.damping_below + system.damping_above) * np.abs(v).max()).max()
@@ -178,7 +195,7 @@ def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
 
 
 def _default_instants(scene: Scene, record: StepRecord) -> Array:
-    """Return output instants, s: evenly spaced, SAMPLES_PER_PERIOD per loading period, and some in each solver step."""
+    """Return the output instants, s: SAMPLES_PER_PERIOD evenly spaced per loading period, and some in each step."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
@@ -195,7 +212,11 @@ def _check_times(scene: Scene, times: ArrayLike) -> Array:
 
 
 def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Return the platform's rise, m, and vertical velocity, m/s; both 0 in the equations for small displacements."""
+    """
+    Return the platform's rise, m, and vertical velocity, m/s, each (T,); 0 in the equations for small displacements.
+
+    x, v: (T, 2), m and m/s, its horizontal displacement and velocity.
+    """
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

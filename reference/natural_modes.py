@@ -1,15 +1,15 @@
 """
 Natural frequencies and modes of small vibration (4.8)-(4.11), undamped and damped, each axis on its own.
 
-Per axis the linearized (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
-of the isolator; `reference.problem.chain_modes` solves it. A flat slider has no first link, so the chain is free: its
-first mode is the motion of all bodies as one, of frequency zero.
+Along each axis the linearized equations (4.3)-(4.4) are M0 q'' + C0 q = 0. This is a chain of N masses whose first link
+is the pendulum stiffness of the isolator; `reference.problem.chain_modes` solves it. A flat slider has no first link.
+The chain is then free: its first mode is the motion of all bodies as one, of frequency zero.
 
-With dampers M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), also where D0 is not proportional to C0.
-With L = diag(k)^1/2 D M0^-1/2, D the elongation of each link, y = M0^1/2 q' and s = L M0^1/2 q, one entry per link,
-they are the eigenvectors of
-    [s' y']^T = [[0, L], [-L^T, -M0^-1/2 D0 M0^-1/2]] [s y]^T,
-in which damping is added to a skew matrix: no eigenvalue has a positive real part.
+With dampers, M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), even if D0 is not proportional to C0.
+Let the matrix D give the elongation of each link, and L = diag(k)^1/2 D M0^-1/2. With the state y = M0^1/2 q', one entry
+for each mass, and s = L M0^1/2 q, one entry for each link, the modes are the eigenvectors of
+    [s' y']^T = [[0, L], [-L^T, -M0^-1/2 D0 M0^-1/2]] [s y]^T.
+This adds damping to a skew matrix, so that no eigenvalue has a positive real part.
 """
 
 from __future__ import annotations
@@ -93,7 +93,11 @@ class DampedModes:
 
 
 def linear_stiffness(scene: Scene) -> Array:
-    """Return the stiffness below each body, (N, 2), N/m: the pendulum's, m_sum g / rho (4.3), first; then links'."""
+    """
+    Return the stiffness below each body along x and y, (N, 2), N/m.
+
+    Below the platform it is that of the pendulum, m_sum g / rho (4.3), below every other body that of its link.
+    """
     pendulum = scene.total_mass * GRAVITY / scene.radius
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 
@@ -127,7 +131,7 @@ def modes(scene: Scene) -> Modes:
     """
     per_axis = [_solve_modes_along_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))
-    return Modes(frequency, shape, participation)
+    return Modes(frequency=frequency, shape=shape, participation=participation)
 
 
 @require_scene
@@ -166,9 +170,10 @@ def _solve_damped_axis(
     masses: Array, stiffness: Array, damping: Array
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Return eigenvalues (2 N,), 1/s, and complex mode shapes (N, 2 N) of the damped chain along one axis."""
-    # The state is (elongations of the links times the root of their stiffness, velocities times the root of the
-    # masses), see above. A flat slider has no first link: its rigid motion has the eigenvalue 0 twice, once as a
-    # displacement, which this state does not contain, and once as a velocity. Both are added by hand, exact.
+    # The state has the elongations of the links times the root of their stiffness, and the velocities times the root of
+    # the masses, as derived at the top of this file. A flat slider has no first link: its rigid motion has the
+    # eigenvalue 0 twice, once as a displacement, which this state does not contain, and once as a velocity. Both modes
+    # are left out of the solution and added exactly.
     count = len(masses)
     # (N, N): row i is the elongation of link i for each mass-normalized coordinate
     elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)
@@ -181,7 +186,7 @@ def _solve_damped_axis(
     state[links:, links:] = -(elongation.T * damping) @ elongation
     values, vectors = eig(state)
     order = np.lexsort((-values.imag, np.abs(values)))
-    rigid = 2 * count - len(order)
+    rigid = 2 * count - len(order)  # 1 on a flat slider, where the state lacks the rigid displacement; otherwise 0
     values, vectors = values[order[rigid:]], vectors[links:, order[rigid:]]
     shape = vectors / np.sqrt(masses)[:, None] / values
     values = np.concatenate([np.zeros(2 * rigid), values])

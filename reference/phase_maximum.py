@@ -35,14 +35,14 @@ from reference.surface import amplification
 QUANTITIES = ("amplification", "displacement")  # quantities that `worst_phases` maximizes
 GRID_TOLERANCE = 1e-4  # relative error asked on the grid of phases, or the user's if larger: the grid starts searches
 MAX_ROUNDS = 60  # largest number of rounds in which all local searches advance
-MAX_SHORTFALL = 0.01  # share of the maximum: a search whose value is lower by more is neither classified nor refined
+MAX_SHORTFALL = 0.01  # a search that ends below the maximum by more than this fraction is not classified or refined
 
 
 class NoAnswerError(ValueError):
-    """Error of a search over all phases that finds no phase pair with an answer. reason: without the scene's name."""
+    """Error of a search over all phases that finds no phase pair with an answer."""
 
     def __init__(self, scene: str, reason: str) -> None:
-        """Keep the reason, and both as the arguments from which a worker's error is made again."""
+        """Set the name of the scene and the reason, from which pickle makes the error again in another process."""
         super().__init__(scene, reason)
         self.reason = reason
 
@@ -61,23 +61,23 @@ class PhaseMaximum:
     value : float
         Amplification mu_i, or the displacement in m. It is attained at `phases`.
     error : float
-        Estimated absolute error: of the solution there, and of the search.
+        Estimated absolute error, the sum of the errors of the solution there and of the search.
     phases : tuple of float, rad
         (alpha_1, alpha_2) in [0, 2 pi). Symmetries of the scene may give other pairs with the same value.
     kind : {"smooth", "kink", "jump"}
         Shape of the surface there: a level tangent, an edge, or a jump, next to which the value is approached.
     side : tuple of float
-        Of a jump: the direction in the plane of phases from it towards the pairs with large values. Otherwise NaN.
+        Direction, a unit vector in the plane of phases, from a jump to the pairs with large values. NaN for others.
     runner_up : float
         The highest other value at which a local search ended. NaN without one.
     climbs, reached : int
-        Local maxima of the grid from which a search started, and searches that ended at the maximum.
+        Number of searches, each from a local maximum of the grid, and of those that ended at the maximum.
     evaluations : int
-        Phase pairs that were computed.
+        Number of phase pairs that were computed.
     reading : str
         Which reading of (5.1) a factor has, as of `Amplification`. "" of a displacement, which is the same in both.
     law : str
-        Law of friction, and what the error leaves out of it.
+        Law of friction, and the effect of it that the error leaves out.
     """
 
     value: float
@@ -152,12 +152,17 @@ def worst_phases(
     if scene.recorded:
         raise ValueError(f"scene {scene.name}: a recorded motion has no phases; use amplification")
     law = {"equations": equations, "regularization": regularization, "cutoff": cutoff}
-    surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
+    surface = Surface(
+        scene=scene,
+        amplification=amplification,
+        settings={**law, "tolerance": tolerance},
+        body=body - 1,
+        quantity=quantity,
+    )
     if starts is None:
         phases, taken = distinct_pairs(scene, GRID)
-        starts = find_local_maxima(
-            surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene
-        )
+        on_grid = surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken]
+        starts = find_local_maxima(on_grid, scene)
     searches = _start_searches(surface, check_phases(starts))
     if not searches:
         raise NoAnswerError(scene.name, f"no phase pair has an answer: {surface.outcome}")
@@ -192,7 +197,12 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
     """Return a local search started at each of the phase pairs (K, 2), rad, at which the motion gave a result."""
     points = surface.compute(phases)
     return [
-        LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
+        LocalSearch(
+            phases=points.phases[n],
+            value=float(points.value[n]),
+            error=float(points.error[n]),
+            half_width=2.0 * np.pi / GRID,
+        )
         for n in np.flatnonzero(np.isfinite(points.value))
     ]
 
@@ -200,7 +210,9 @@ def _start_searches(surface: Surface, phases: Array) -> list[LocalSearch]:
 def _classify_highest(
     surface: Surface, searches: Sequence[LocalSearch]
 ) -> dict[LocalSearch, tuple[str, tuple[float, float]]]:
-    """Return kind (smooth, kink, jump) of the highest maxima, direction to a jump's high side; first follow jumps."""
+    """
+    Return for each of the highest searches what `classify_maximum` says, after moving searches along their jumps.
+    """
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
     kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:

@@ -13,7 +13,8 @@ from reference.records.description import G_UNIT_QUESTION, RecordDescription
 from reference.support.arguments import Range, name_some
 
 SUPPORT_LOAD_RANGE = Range(1e3, 1e8, "N")  # plausible dead load per support
-MAX_UNIT_MASS_SCENE = 10.0  # kg, total mass: less means unit masses, as in the paper; masses, supports are unchecked
+# Total mass, kg, up to which a scene is taken to have unit masses as in the paper: masses and supports are not checked
+MAX_UNIT_MASS_SCENE = 10.0
 MIN_FRICTION_RATE = 1.0  # s/m: a smaller rate of change of friction with slip speed is hardly intended
 MAX_SUPPORT_EXTENT = 300.0  # m: supports that are farther apart are hardly intended
 MAX_EXTENT_OVER_SIZE = 2.0  # a larger ratio of the supports' extent to the platform's size is hardly intended
@@ -69,7 +70,7 @@ def implausible_suite(motions: Sequence[RecordDescription]) -> list[str]:
 
 
 def implausible_drift(ratio: float, place: str) -> str:
-    """Return a warning of an implausible drift ratio, "" for any other; place: the story, in words."""
+    """Return a warning about an implausible ratio of drift to story height, "" for any other; place: story in words."""
     if ratio <= MAX_DRIFT_RATIO:
         return ""
     share = f"{100.0 * ratio:.3g} % of the height of the story, above {100.0 * MAX_DRIFT_RATIO:g} %"
@@ -130,12 +131,12 @@ def _implausible_masses(scene: Scene, building: Building) -> Iterator[str]:
     if len(scene.bodies) == 1:
         return
     with np.errstate(divide="ignore"):  # infinite where the sum of all other masses rounds to zero
-        shares = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
-    place = int(np.argmax(np.abs(np.log(shares))))
-    if (share := float(shares[place])) not in MASS_RATIO_RANGE:
-        limit = _word_end_beyond(share, MASS_RATIO_RANGE, lambda value: f"{value:g}")
+        ratios = scene.masses * (len(scene.bodies) - 1) / (scene.total_mass - scene.masses)
+    place = int(np.argmax(np.abs(np.log(ratios))))
+    if (ratio := float(ratios[place])) not in MASS_RATIO_RANGE:
+        limit = _word_end_beyond(ratio, MASS_RATIO_RANGE, lambda value: f"{value:g}")
         mass = f"the mass of {_name_body(scene, place)} is {scene.masses[place]:.4g} kg"
-        yield f"{mass}, {share:.2g} times the mean of the others, {limit}: kg in one place and t in another?"
+        yield f"{mass}, {ratio:.2g} times the mean of the others, {limit}: kg in one place and t in another?"
 
 
 def _implausible_supports(scene: Scene, building: Building) -> Iterator[str]:

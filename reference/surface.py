@@ -1,4 +1,4 @@
-"""Amplification surface: amplification of all bodies, with error estimate, for every phase pair, on all threads."""
+"""Amplifications of all bodies, with error estimates, at many pairs of initial phases, computed on all threads."""
 
 from __future__ import annotations
 
@@ -46,15 +46,14 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # part of the limit of steps in a run: steps per period of the loading
-STEP_LIMIT_PER_KNOT = 10  # part of the limit of steps in a run: steps per sample of a recorded ground motion
-# Part of the limit of steps in a run: steps per period of the bodies' fastest vibration, and the most that these add
+# The limit of steps in a run is the sum of a number that does not depend on the scene, and of steps per period of the
+# loading, per sample of a recorded ground motion, and per period of the bodies' fastest vibration (at most so many).
+BASE_STEPS, STEPS_PER_PERIOD, STEP_LIMIT_PER_KNOT = 20_000, 1000, 10
 STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
+MAX_STEPS = 3_000_000  # largest limit of steps in a run, not counting BASE_STEPS; it takes about 30 s for two bodies
 # The time in which forces change is at most this number of periods of the bodies' fastest vibration: stiff links then
 # follow without vibrating
 VIBRATIONS_PER_TIME_SCALE = 10.0
-BASE_STEPS = 20_000  # part of the limit of steps in a run that does not depend on the scene
-MAX_STEPS = 3_000_000  # largest limit of steps in a run, not counting BASE_STEPS; it takes about 30 s for two bodies
 PARTS_PER_THREAD = 8  # slices of the loading's phase pairs per thread, so that no thread waits long for another
 
 
@@ -70,9 +69,10 @@ def amplification(
     full: bool = False,
 ) -> Amplification:
     """
-    Return amplifications mu_i (5.1) from rest, peak absolute over peak ground acceleration, by the paper's equations.
+    Return the amplifications mu_i (5.1) of all bodies, which start at rest, by the paper's equations, with errors.
 
-    All have error estimates. By default each is the literal supremum of (5.1); ``cutoff=1e-3`` gives it as integrated.
+    An amplification is the peak absolute acceleration of a body over that of the ground. By default it is the literal
+    supremum of (5.1); ``cutoff=1e-3`` gives it as integrated.
 
     Parameters
     ----------
@@ -148,9 +148,16 @@ def amplification(
             return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
 
         cost = _solve_on_threads(solve, len(pairs), alone=summed)
-    share = found.displacement / scene.radius
     return Amplification(
-        found.mu, found.error, found.status, found.instant, cost, share, pairs, found.displacement, **basis
+        mu=found.mu,
+        error=found.error,
+        status=found.status,
+        instant=found.instant,
+        cost=cost,
+        cap_share=found.displacement / scene.radius,
+        phases=pairs,
+        displacement=found.displacement,
+        **basis,
     ).reshaped(shape)
 
 
@@ -168,7 +175,13 @@ class _PointAnswers(NamedTuple):
         """Return results that are NaN at all points, with the status that the ground acceleration is not finite."""
         status = np.full(points, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
         nothing = np.full((points, bodies), np.nan)
-        return _PointAnswers(nothing, nothing.copy(), status, np.zeros(points), np.full(points, np.nan))
+        return _PointAnswers(
+            mu=nothing,
+            error=nothing.copy(),
+            status=status,
+            instant=np.zeros(points),
+            displacement=np.full(points, np.nan),
+        )
 
 
 def _solve_points(
@@ -182,7 +195,11 @@ def _solve_points(
     summed: bool,
     full: bool,
 ) -> float:
-    """Compute results at a slice of pairs of loading phases (M, 2), rad, into `found`; return the time it took, s."""
+    """
+    Compute the results at a slice `part` of the phase pairs (M, 2), rad, into `found`; return the time it took, s.
+
+    summed: superpose the harmonics of a linear scene instead of integrating. full: run every motion to its end.
+    """
     begin = time.thread_time()
     ground = ground_peak(scene, pairs[part])
     shaken = ground >= LEAST_ACCELERATION
@@ -205,7 +222,11 @@ def _solve_points(
 
 
 def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) -> float:
-    """Call `solve` for slices of `count` loading phase pairs, on all threads unless `alone`; return sum of times, s."""
+    """
+    Call `solve` for slices that together are `count` phase pairs; return the sum of the times that it returns, s.
+
+    The slices are computed on all threads; if `alone`, one slice of all pairs is computed on this thread.
+    """
     threads = numba.get_num_threads()
     if alone or threads == 1 or count < 2:
         return solve(slice(0, count))
@@ -215,14 +236,26 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
 
 
 def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """Return a linear scene's peaks by superposed harmonics; run only motions that may reach travel or rim (4.1)."""
+    """
+    Return the peaks of a linear scene's motions, each the sum of the motions by both harmonics.
+
+    Only motions that may reach the travel or the rim (4.1) are integrated in time, which tells whether and when.
+    """
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
-    code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
-    peaks = RunPeaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
-    if ends.any():  # the limit of travel or the rim may be reached: only time integration tells whether and when
-        for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
-            whole[ends] = ran
+    instant, steps, last_peak = np.zeros((3, len(phases)))  # not known without a run
+    peaks = RunPeaks(
+        value=value,
+        error=error,
+        code=np.where(met, SOLVED, NOT_MET),
+        instant=instant,
+        steps=steps,
+        reach=reach,
+        last_peak=last_peak,
+    )
+    if ends.any():
+        for column, integrated in zip(peaks, peaks_with_error(system, phases[ends], demand)):
+            column[ends] = integrated
     return peaks
 
 
@@ -241,7 +274,11 @@ def prepare_run(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, RunSettings]:
-    """Return the scene for compiled code and the run settings, from arguments of `amplification`. Raises ValueError."""
+    """
+    Return the scene packed for compiled code, and the settings of its runs. Raises ValueError.
+
+    Arguments are those of `amplification`, which are checked. axes: 1 if the motion stays in the plane of x, else 2.
+    """
     check_choice("equations", equations, ("exact", "small"))
     check_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = check_number("tolerance", tolerance, TOLERANCE_RANGE)
@@ -268,7 +305,11 @@ def prepare_run(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Return the time, s, in which forces change: the shortest period or decay time of loading, isolator and bodies."""
+    """
+    Return the time, s, in which forces change: the shortest period or decay time of loading, isolator and bodies.
+
+    acceleration: bound on that of the ground, m/s^2. fastest: bound on angular frequencies of the bodies, rad/s.
+    """
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()
@@ -281,7 +322,7 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 
 
 def loads_are_finite(system: System) -> bool:
-    """Return True if the squares of ground accelerations, for the amplification (5.1), are not too large for floats."""
+    """Return True if the squared ground acceleration, which (5.1) needs, does not overflow double precision."""
     largest = max(np.abs(part).max(initial=0.0) for part in (system.amplitudes, system.record))
     with np.errstate(over="ignore"):
         return bool(np.isfinite(np.square(largest) * 1e8))

@@ -27,7 +27,7 @@ class Range:
     """
     Finite numbers from `lowest` to `highest`, both included, in `unit`; with `or_infinite` also inf.
 
-    hint: what to write instead of another number.
+    hint: words at the end of an error message on what to write in place of a number outside the range.
     """
 
     lowest: float

@@ -1,9 +1,9 @@
 """
 Caching of functions compiled by numba: on disk, in the user's cache folder, under a hash of their source files.
 
-Numba looks at the file of a function alone when it decides whether a build is still good, not at what it calls in other
-files. A build that belongs to all of these sources together cannot go stale. Nothing is ever written into the installed
-package, which may be read-only or belong to somebody else.
+Numba itself decides by the file of a function alone whether a compiled build is still valid, and does not see changes
+of the functions that it calls in other files. Here the folder of a build is named after all of these sources, so that a
+build cannot go stale. Nothing is ever written into the installed package, which may be read-only or belong to others.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ config: Any = numba.config  # global settings of numba
 
 
 class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
-    """Numba's compiler, made faster: Python's garbage collection, nearly useless in it, is off while it runs."""
+    """Numba's compiler with Python's garbage collection off while it runs, which frees little and takes time."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function, with garbage collection off."""
@@ -70,7 +70,8 @@ def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Ca
     """
     Return a decorator that compiles a function with numba and caches it on disk.
 
-    sources: file or folder of all code that it calls; slow: True to tell the user on standard error that it compiles.
+    sources: file or folder of all code that the function calls. slow: True if its compilation takes long, so that the
+    user is told of it on standard error.
     """
     pipeline = _AnnouncingCompiler if slow else _CompilerWithoutCollection
     folder = build_folder(Path(sources))
@@ -106,7 +107,11 @@ def _find_writable(folder: Path) -> Path | None:
 
 
 def _private_temporary() -> Path | None:
-    """Return a temporary directory that no other user can write to (compiled code in it is run); None if impossible."""
+    """
+    Return a temporary directory that no other user can write to; None if that is impossible.
+
+    Compiled code in it is run, so another user who could write there could run code as this one.
+    """
     user = os.getuid() if hasattr(os, "getuid") else None
     folder = Path(tempfile.gettempdir()) / (CACHE_NAME if user is None else f"{CACHE_NAME}-{user}")
     try:

@@ -1,9 +1,9 @@
 """
-How every command line program ends: its exit code, one line for any error, never a traceback on the terminal.
+How every command line program ends: with an exit code, and for any error one line in place of a traceback.
 
-Codes that are common to all commands: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
-and for a file or an output that cannot be written; 128 + number for a signal, 130 for Ctrl-C; 141 if whoever read the
-output has closed it, as `head` does.
+Exit codes that are common to all commands are 2 for wrong input; 3 for an unexpected error, whose traceback goes to a
+file, and for a file or an output that cannot be written; 128 plus its number for a signal, that is 130 for Ctrl-C; and
+141 if whoever read the output has closed it, as `head` does.
 """
 
 from __future__ import annotations

@@ -73,7 +73,11 @@ def write_half_turns(phase: float) -> str:
 def draw_motion(
     time: Array, values: Array, rests: Sequence[tuple[float, float]], label: str, title: str, axes: Axes | None
 ) -> Axes:
-    """Draw a motion, `values` (T, N, 3) of all bodies along x and y, over `time` (T,), s; shade intervals of rest."""
+    """
+    Draw a quantity of all bodies along x and y over `time` (T,), s, and shade the intervals of rest.
+
+    values: (T, N, 3), along x, y and z. rests: start and end of every rest, s. label: text of the vertical axis.
+    """
     axes = _new_axes(None) if axes is None else axes
     every = slice(None, None, -(-len(time) // MAX_TIME_POINTS) or 1)
     for body in range(values.shape[1]):

@@ -1,11 +1,10 @@
 """
-Writing of files and directories whole or not at all, which replaces nothing that somebody else wrote; and reading of
-files that somebody else may have written.
+Writing of files and directories whole or not at all, without replacing what somebody else wrote, and safe reading.
 
-A file is written under a temporary name in the folder of its place and renamed. A directory is written in a staging
-directory in that folder. The staging directory carries a mark that names the place, and a lock that ends with the
-process, however that ends. A marked directory without a lock belongs to no living process. Without locks (Windows) none
-is taken for dead.
+A file is written under a temporary name in the folder of its final path and then renamed. A directory is written in a
+staging directory in that folder. The staging directory has a file that names the final path (the mark), and a lock that
+ends with the process, however that ends. A marked directory without a lock therefore belongs to no living process.
+Where the system has no locks (Windows), no directory is taken for abandoned.
 """
 
 from __future__ import annotations
@@ -89,7 +88,11 @@ def iterate_names(place: Path) -> Iterator[Path]:
 
 @contextmanager
 def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
-    """Hold a directory's lock for a block; yield False if it is not held (taken and not `wait`, or no locks exist)."""
+    """
+    Hold a directory's lock for a block; yield True if it is held.
+
+    It is not held if the system has no locks, or if another process holds it and `wait` is False.
+    """
     handle = -1
     try:
         if fcntl is not None:
@@ -120,7 +123,11 @@ def staging_directory(place: Path) -> Iterator[Path]:
 
 
 def find_abandoned_staging(place: Path) -> Iterator[Path]:
-    """Iterate over staging directories of `place` that ended processes have left; each is locked in the loop's body."""
+    """
+    Iterate over the staging directories for the final path `place` that ended processes have left.
+
+    Each is locked in the body of the caller's loop.
+    """
     with suppress(OSError):
         for folder in sorted(place.parent.iterdir()):
             if folder.name.startswith(TEMPORARY_PREFIX) and not folder.is_symlink() and _is_marked(folder, place):

@@ -12,7 +12,7 @@ MAX_LETTERS = 300  # largest number of letters of a path or key that an error me
 MAX_ERRORS = 50  # largest number of errors of one file that a message lists; it only counts the others
 # Smallest similarity (difflib) of an unknown key to a valid one for "did you mean ...?": other words share less
 MIN_SPELLING_SIMILARITY = 0.7
-# First words of what an error message says is wrong: about a missing key, a missing table and an unknown key
+# First words of the rule in an error about a missing key, a missing table and an unknown key
 IS_REQUIRED, IS_MISSING, IS_UNKNOWN = "this key is required", "the table [", "unknown key; "
 # What error messages tell users to write in place of keys that they know from other programs
 YIELDING_HINT = (
@@ -71,11 +71,11 @@ class SceneError(ValueError):
     key : str
         Dotted key, as "isolator.friction".
     value : object
-        What the scene has there.
+        Value that the scene has there.
     rule : str
-        What it must be, or what to try.
+        What the value must be, or what to try.
     others : sequence of SceneError
-        What else is wrong in the same file, behind it.
+        Further errors in the same file.
     """
 
     def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
@@ -123,7 +123,7 @@ def printable(text: str) -> str:
 
 
 def keys_of_table(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
-    """Return the valid keys of a scene's table from `keys`, where "parent.*" stands for tables with any name."""
+    """Return the valid keys of a table from `keys` by table, where "parent.*" stands for tables of any name in it."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
 
 
