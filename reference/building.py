@@ -27,7 +27,7 @@ MAX_KINDS = 3  # largest number of different buildings, or of kinds of friction,
 @dataclass(frozen=True)
 class Building:
     """
-    Weight, periods, damping and isolator of a building as read from a scene; of each pair, index 0 is x and 1 is y.
+    Weight, periods, damping and isolator of a building as read from a scene. On axes of length 2, index 0 is x, 1 is y.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ def word_buildings(buildings: Sequence[Building]) -> list[str]:
 
 
 def are_equal_loads(loads: ArrayLike, mean: float) -> bool:
-    """Return whether dead loads of supports, N, count as equal; mean: weight over the number of supports, N."""
+    """Return True if dead loads of supports, N, count as equal; mean: weight over the number of supports, N."""
     return float(np.ptp(loads)) <= EQUAL_LOAD_TOLERANCE * mean
 
 

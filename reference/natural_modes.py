@@ -6,8 +6,8 @@ is the pendulum stiffness of the isolator; `reference.problem.chain_modes` solve
 The chain is then free: its first mode is the motion of all bodies as one, of frequency zero.
 
 With dampers, M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), even if D0 is not proportional to C0.
-With dampers, M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), also if D0 is no multiple of C0.
-for each mass, and s = L M0^1/2 q, one entry for each link, the modes are the eigenvectors of
+Let the matrix D give the elongation of each link, and L = diag(k)^1/2 D M0^-1/2. The state is y = M0^1/2 q', one entry
+for each mass, and s = L M0^1/2 q, one entry for each link. The modes are then the eigenvectors of
     [s' y']^T = [[0, L], [-L^T, -M0^-1/2 D0 M0^-1/2]] [s y]^T.
 This adds damping to a skew matrix, so that no eigenvalue has a positive real part.
 """

@@ -167,12 +167,13 @@ def _torsion_reader(body: int) -> ReadNumber:
 def _support_displacement_reader(scene: Scene) -> ReadNumber:
     """Return a function that reads the largest displacement of a support of a platform that rotates."""
     assert scene.support_places is not None
-    # Positions of the supports from the platform's center of mass as complex numbers x + i y
+    # With horizontal vectors as complex numbers x + i y, a platform displaced by u and rotated by psi displaces a
+    # support at the position arm from its center of mass by u + (exp(i psi) - 1) arm.
     arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]
 
     def largest(samples: DemandSamples) -> float:
-        """Return the largest displacement of a support, |u + (exp(i psi) - 1) arm|; u, psi: platform's place, yaw."""
-        place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
-        return float(np.abs(place + (turn - 1.0) * arms).max())
+        """Return the largest displacement of any support at any instant, m."""
+        place, rotation = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
+        return float(np.abs(place + (rotation - 1.0) * arms).max())
 
     return largest

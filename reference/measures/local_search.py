@@ -139,7 +139,11 @@ class LocalSearch:
 
 @cache
 def make_square_nodes(nodes: int) -> tuple[Array, Array]:
-    """Return nodes in [-1, 1]^2, (nodes^2, 2), and the matrix from values there to Chebyshev coefficients."""
+    """
+    Return the nodes of a polynomial on the square [-1, 1]^2, (nodes^2, 2), and a matrix (nodes^2, nodes^2).
+
+    The matrix times the values at the nodes gives the coefficients of the Chebyshev polynomials of both coordinates.
+    """
     node = np.cos(np.pi * np.arange(nodes) / (nodes - 1))
     places = np.stack(np.meshgrid(node, node, indexing="ij"), axis=-1).reshape(-1, 2)
     return places, np.linalg.inv(chebyshev.chebvander2d(places[:, 0], places[:, 1], [nodes - 1, nodes - 1]))

@@ -23,11 +23,12 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class BarLink:
     """
-    Stiffness of all bars of one link, between two points, one fixed to each body, that coincide half-way up the bars.
+    Stiffness of all bars of one link together.
 
-    shear: N/m, without the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis.
-    tension: N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the
-    bars shorten; 0 where they do not. load: N, the weight above.
+    It acts between two points, one fixed to each body, that coincide half-way up the bars at rest. shear: N/m, without
+    the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis. tension: N/m.
+    torsion: N m. pendulum: m, length of an upright rod, hinged at its foot, on whose top the body above would sink as
+    much as it does while the bars shorten; 0 if they do not. load: N, the weight above.
     """
 
     shear: float

@@ -61,7 +61,11 @@ def has_one_axis_per_harmonic(scene: Scene) -> Reduction:
 
 
 def body_cannot_tilt(scene: Scene) -> Reduction:
-    """Find whether the spatial model is one body that cannot turn: then the translational model gives its motion."""
+    """
+    Find whether the spatial model is a single body that cannot rotate.
+
+    The engine's translational model, whose bodies do not rotate, then gives its motion.
+    """
     # All contact forces on a body that does not turn are parallel, so a single body is in balance with them at unequal
     # shares. If its center of mass is level with the depressions' centers, friction moves the supports' center of force
     # off the axis by at most its coefficient times the depressions' radius. It must stay inside the ring of supports.

@@ -34,7 +34,7 @@ from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000  # largest number of bodies in a scene
-MIN_STATIC_SHARE = 1e-9  # smallest load of a support at rest, over the weight: a smaller one counts as none
+MIN_STATIC_SHARE = 1e-9  # load of a support at rest, as a fraction of the weight, below which it counts as none
 MAX_SUPPORT_DEFLECTION = 0.1  # largest accepted deflection of supports under the weight, over the pendulum radius
 DERIVED_ROUNDING = 1e-12  # relative rounding error that is allowed when a computed value is checked against its range
 
@@ -357,7 +357,7 @@ class Scene(Table):
 
     @property
     def bar_links(self) -> list[BarLink | None]:
-        """Stiffness of each link in shear, bending, tension and torsion, lowest link first; None unless of bars."""
+        """Stiffness of each link that is made of flexible bars, lowest link first; None for a link of another kind."""
         return bar_links(self.bodies, self.loads_above, self.support_radius)
 
     @cached_property
