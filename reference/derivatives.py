@@ -425,6 +425,7 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
 def _halve_bracket(bracket: _Bracket, point: Callable[[float], _QuantityAtValue], enough: float) -> _Bracket | None:
     """Return the bracket halved to the width `enough`, or until errors hide the kink; None if a value is missing."""
     # Of the two halves the one is kept whose slope departs more from the slope outside of it: the kink lies there.
+    # Where the departure is hardly larger than the errors of the slopes, `noise`, no half can be chosen.
     low, high, below, beyond = bracket
     for _ in range(MAX_HALVINGS):
         if high.at - low.at <= enough:

@@ -131,7 +131,7 @@ def amplification(
     # which distinguishes directions, or with friction that yields before it slides.
     flat = not full and rest_condition == "consistent" and is_planar(scene).allowed and not scene.dry_friction.elastic
     moving, axes = (turn_loading_to_x(scene), 1) if flat else (scene, 2)
-    system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
+    system, settings = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     basis: dict[str, Any] = {
         "scene_name": scene.name,
         "model": f"{equations} equations",
@@ -144,8 +144,8 @@ def amplification(
         summed = system.small and not full and is_linear(scene).allowed
 
         def solve(part: slice) -> float:
-            """Compute amplifications at a slice of pairs of loading phases, into `found`; return the time taken, s."""
-            return _solve_points(scene, system, demand, pairs, part, found, summed=summed, full=full)
+            """Compute the results at a slice of the phase pairs into `found`; return the time that it took, s."""
+            return _solve_points(scene, system, settings, pairs, part, found, summed=summed, full=full)
 
         cost = _solve_on_threads(solve, len(pairs), alone=summed)
     return Amplification(
@@ -187,7 +187,7 @@ class _PointAnswers(NamedTuple):
 def _solve_points(
     scene: Scene,
     system: System,
-    demand: RunSettings,
+    settings: RunSettings,
     pairs: Array,
     part: slice,
     found: _PointAnswers,
@@ -207,9 +207,9 @@ def _solve_points(
     places = np.arange(len(pairs))[part][shaken]
     moving_pairs = pairs[places]
     if summed:
-        peaks = superpose_harmonics(scene, system, moving_pairs, demand)
+        peaks = superpose_harmonics(scene, system, moving_pairs, settings)
     else:
-        peaks = peaks_with_error(system, moving_pairs, demand, whole=full)
+        peaks = peaks_with_error(system, moving_pairs, settings, whole=full)
     outcomes = np.array([OUTCOMES[int(code)] for code in peaks.code], dtype=object)
     outcomes[(outcomes == Outcome.OK) & ~np.isfinite(peaks.value).all(axis=1)] = Outcome.SOLVER_FAILED
     known = (outcomes == Outcome.OK) | (outcomes == Outcome.TOLERANCE_NOT_MET)
@@ -235,14 +235,14 @@ def _solve_on_threads(solve: Callable[[slice], float], count: int, alone: bool) 
         return sum(pool.map(solve, split_points(count, PARTS_PER_THREAD * threads)))
 
 
-def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
+def superpose_harmonics(scene: Scene, system: System, phases: Array, settings: RunSettings) -> RunPeaks:
     """
     Return the peaks of a linear scene's motions, each the sum of the motions by both harmonics.
 
     Only motions that may reach the travel or the rim (4.1) are integrated in time, which tells whether and when.
     """
     value, error, reach, ends = frictionless_peaks(scene, phases)
-    met = (error <= demand.tolerance * value).all(axis=1)
+    met = (error <= settings.tolerance * value).all(axis=1)
     instant, steps, last_peak = np.zeros((3, len(phases)))  # not known without a run
     peaks = RunPeaks(
         value=value,
@@ -254,7 +254,7 @@ def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: Run
         last_peak=last_peak,
     )
     if ends.any():
-        for column, integrated in zip(peaks, peaks_with_error(system, phases[ends], demand)):
+        for column, integrated in zip(peaks, peaks_with_error(system, phases[ends], settings)):
             column[ends] = integrated
     return peaks
 

@@ -135,6 +135,7 @@ class DemandReader:
     def __init__(self, motion: Trajectory) -> None:
         """Take the samples of the motion, subsets of every DECIMATION-th of them, and samples of less accurate runs."""
         self.motion, self.accuracy = motion, motion.accuracy
+        # False for a motion that ended early: all of its numbers are then NaN
         self.answered = motion.status in FULL_LENGTH_OUTCOMES and len(motion.time) > 0
         self.samples = DemandSamples.from_motion(motion)
         self.decimated = self.samples.split_into_subsamples()

@@ -101,12 +101,13 @@ def demands(trajectory: Trajectory) -> Demands:
     An error has two parts. The sampling error is the largest change if only every fifth sample is taken. For energies
     it is a fourth of that, since the error of the trapezoidal rule grows at least like the spacing. The error of the
     solution comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
-    A platform at rest under a regularized friction law creeps toward the center forever. So the residual is the
-    displacement at the start of the last interval of `Trajectory.stick`, if that lasts to the end of the motion, under
-    either law. Its error also contains the possible effect of the regularization: the largest distance that the
-    platform creeps from the start of an interval, summed over all intervals. Under friction that yields elastically it
-    is the largest elastic distance from the start of the last one. In 219 regularized motions under records
-    the residual was off by 0.62 of that sum at most. The set-valued law has no creep.
+
+    A platform at rest under a regularized friction law creeps toward the center forever. Under either law the residual
+    is therefore the displacement at the start of the last interval of `Trajectory.stick`, if that lasts to the end of
+    the motion. Its error also contains the possible effect of the regularization, for which the distances that the
+    platform creeps in all intervals are added up. In 219 regularized motions under records the residual was off by at
+    most 0.62 of this sum. Under friction that yields elastically, the largest elastic distance in the last interval
+    takes the place of the sum. The set-valued law has no creep.
 
     The samples do not reach the one-sided limits of accelerations at a stop. `acceleration` does: it is
     `Trajectory.peak`.

@@ -95,7 +95,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     period = PERIODS if periods is None else _check_periods(periods)
     if trajectory.status not in FULL_LENGTH_OUTCOMES or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
-        return FloorSpectra(period, damping, nothing, nothing.copy())
+        return FloorSpectra(period=period, damping=damping, acceleration=nothing, error=nothing.copy())
 
     series = _power_series(damping)
 
@@ -111,12 +111,12 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
 
     value, accuracy = spectra(trajectory), trajectory.accuracy
     if accuracy is None:
-        return FloorSpectra(period, damping, value, np.full_like(value, np.nan))
+        return FloorSpectra(period=period, damping=damping, acceleration=value, error=np.full_like(value, np.nan))
     changes = [np.abs(spectra(trajectory, first, DECIMATION) - value) for first in range(DECIMATION)]
     error = SAMPLING_FACTOR * np.max(changes, axis=0) + accuracy.floor * value
     for share, other in zip(accuracy.share, accuracy.coarser, strict=True):
         error += share * np.abs(spectra(other) - value)
-    return FloorSpectra(period, damping, value, error)
+    return FloorSpectra(period=period, damping=damping, acceleration=value, error=error)
 
 
 def factor_for_spectrum(

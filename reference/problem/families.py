@@ -306,13 +306,14 @@ def _add_other_errors(
     others: list[SceneError] = []
     with _collect_errors(others):
         _make_member_scene(tables, label, "", [(key, 0) for key in keys])
-    said = {".".join(map(str, path)) for path, _ in find_varied_keys((), tables)} - {key.name for key in keys}
-    said |= {"excitation.record" for error in wrong if error.key.startswith("excitation.record.")}
+    # keys that still have their inline table in place of a value, as their own errors say: no error inside these counts
+    varied = {".".join(map(str, path)) for path, _ in find_varied_keys((), tables)} - {key.name for key in keys}
+    varied |= {"excitation.record" for error in wrong if error.key.startswith("excitation.record.")}
     own = [
         error
         for error in others
-        if (error.key in said and error.rule.startswith(IS_UNKNOWN))
-        or not any(f"{error.key}.".startswith(f"{key}.") for key in said)
+        if (error.key in varied and error.rule.startswith(IS_UNKNOWN))
+        or not any(f"{error.key}.".startswith(f"{key}.") for key in varied)
     ]
     return join_errors([*wrong, *own], data)
 
@@ -392,7 +393,11 @@ def _scale_friction(friction: Any, factor: float) -> Any:
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_VariedParameter], places: Mapping[str, Any]) -> None:
-    """Check `combine` (product, zip) against the keys with several values and how many they have. Raises SceneError."""
+    """
+    Check `combine` (product, zip) against the keys with several values and how many they have. Raises SceneError.
+
+    places: inline tables of all keys with several values, by dotted key. running: those of these keys that are valid.
+    """
     if combine is not None and combine not in COMBINATIONS:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINATIONS)}")
     if combine is not None and len(places) < 2:

@@ -95,7 +95,7 @@ def _position_in_file(tables: Any, key: str) -> list[int]:
 
 
 def _word_error(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """Return one error of pydantic in the words of the scene file."""
+    """Return one error of pydantic in the words of the scene file; keys: valid keys of every table, by its name."""
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)

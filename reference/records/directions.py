@@ -46,13 +46,14 @@ def parse_direction(word: str) -> Direction | None:
     if upper in AXIS_OF:
         return Direction(word, AXIS_OF[upper])
     if re.fullmatch(r"[0-3][0-9]{2}", upper) and int(upper) <= 360:
-        return Direction(word, "", float(upper))
+        return Direction(word, "", azimuth=float(upper))
     quadrant = re.fullmatch(r"([NS])([0-9]{1,2})([EW])", upper)
     if quadrant is None or int(quadrant[2]) > 90:
         return None
     north, angle, east = quadrant[1] == "N", float(quadrant[2]), quadrant[3] == "E"
+    # N18E is 18 degrees, S72E 180 - 72 degrees from north to east
     turned = angle if north == east else -angle
-    return Direction(word, "", (turned if north else 180.0 + turned) % 360.0)
+    return Direction(word, "", azimuth=(turned if north else 180.0 + turned) % 360.0)
 
 
 def axis_of_word(word: str) -> str:

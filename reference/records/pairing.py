@@ -60,26 +60,26 @@ def find_motion(file: Path, files: Sequence[Path]) -> Motion:
 
 def _word_unpaired_files(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
     """Return the error message that lists the files left without a pair, and why. groups: from `_group_files`."""
-    shares: dict[str, list[Path]] = {}
+    by_base: dict[str, list[Path]] = {}  # files by the name without direction of their largest group
     for file in files:
         bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]
-        shared = max(bases, key=lambda base: (len(groups[base]), -len(base)), default="")
-        shares.setdefault(shared, []).append(file)
+        largest = max(bases, key=lambda base: (len(groups[base]), -len(base)), default="")
+        by_base.setdefault(largest, []).append(file)
     said: list[str] = []
-    lone: dict[str, list[str]] = {}
-    for base, alone in shares.items():
-        told = [groups[base][file][1] for file in alone] if base else []
-        angles = [f"{one.azimuth:g}" for one in told if one.azimuth is not None]
-        upright = sum(one.axis == "z" for one in told)
+    incomplete: dict[str, list[str]] = {}  # names of motions by the components that were found
+    for base, alone in by_base.items():
+        directions = [groups[base][file][1] for file in alone] if base else []
+        angles = [f"{one.azimuth:g}" for one in directions if one.azimuth is not None]
+        upright = sum(one.axis == "z" for one in directions)
         if not base:
             said.append(f"{_list_names([file.name for file in alone])}: no direction at the end of the name")
-        elif len(angles) == len(told) >= 2:
+        elif len(angles) == len(directions) >= 2:
             numbers = f"numbers {', '.join(angles[:3])}"
             said.append(f"{_list_names([file.name for file in alone])}: {numbers} are no azimuths across each other")
         else:
-            found = f"{len(told) - upright} horizontal and {upright} vertical"
-            lone.setdefault(found, []).append(groups[base][alone[0]][0])
-    for found, names in lone.items():
+            found = f"{len(directions) - upright} horizontal and {upright} vertical"
+            incomplete.setdefault(found, []).append(groups[base][alone[0]][0])
+    for found, names in incomplete.items():
         said.append(
             f"{_list_names(names)} {'has' if len(names) == 1 else 'have'} {found} components: must have 2, and 0 or 1"
         )

@@ -213,7 +213,7 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     names = {kind: [file.name for file, own in kinds.items() if own == kind] for kind in NAMED_KINDS}
     level = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
     motions = level if components == 1 else _pair_records(records)
-    return MotionList(_check_distinct_names(motions), ignored, names, proposal)
+    return MotionList(motions=_check_distinct_names(motions), ignored=ignored, names=names, proposal=proposal)
 
 
 def _pair_records(records: Sequence[Path]) -> list[Motion]:

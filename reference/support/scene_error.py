@@ -102,7 +102,7 @@ class SceneError(ValueError):
 
 
 class MisfitError(ValueError):
-    """Error for scene values that are each valid but contradict each other; `first_scene_error` makes a SceneError."""
+    """Error for scene values that are each valid but contradict each other; it becomes a SceneError with the file."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
         """Set the key that the message names, its value, and the rule that the values break together."""

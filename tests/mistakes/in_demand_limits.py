@@ -418,7 +418,7 @@ MISTAKES = (
     Mistake("comparison/analyses/ensemble/gate.py", "each.uplift is not None or each.support_displacement is not None", "each.uplift is not None",
             "A limit on the displacement of a support asks for no engine.",
             ("tests/comparison/analyses/test_assert_demands.py::test_a_limit_on_what_the_engine_alone_has_asks_for_its_motions",)),
-    Mistake("reference/problem/families.py", 'or not any(f"{error.key}.".startswith(f"{key}.") for key in said)', "or True",
+    Mistake("reference/problem/families.py", 'or not any(f"{error.key}.".startswith(f"{key}.") for key in varied)', "or True",
             "What follows from a wrong range is said beside it.",
             ("tests/reference/problem/test_family_files.py::test_all_keys_that_run_wrongly_are_in_one_line_with_all_other_errors_and_nothing_that_follows",)),
     Mistake("reference/problem/families.py", "        with _collect_errors(wrong):\n            scenes.append(", "        if not wrong:\n            scenes.append(",
