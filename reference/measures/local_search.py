@@ -25,11 +25,12 @@ from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
 
 DISPLACEMENT_ERROR = 1e-3  # relative error taken for `Amplification.displacement`: the largest that it may have
-# Coordinates along each axis of a search's square region at which a polynomial is evaluated: first, and finer grids
+# Coordinates along each axis of a search's square, at which a function is evaluated on the first and on finer grids
 COARSE_COORDINATES, FINE_COORDINATES = np.linspace(-1.0, 1.0, 13), np.linspace(-1.0, 1.0, 9)
 QUOTIENT_GRIDS = 5  # number of grids that locate the maximum of the interpolant, each finer than the grid before
 MIN_HALF_WIDTH = 1e-7  # rad: a search ends when its square region has a smaller half width
-# A search's square keeps its size and moves if its best phase pair is this share of its half width off center, or more
+# If the best phase pair of a search's square is off its center by this fraction of the half width or more, the square
+# keeps its size and moves
 MOVING_FRACTION = 0.8
 # Nodes of the interpolating polynomial along each axis of a search's square: at first, and after a poor prediction
 INTERPOLATION_NODES, INTERPOLATION_NODES_AFTER_MISS = 3, 5

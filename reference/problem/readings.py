@@ -1,8 +1,9 @@
 """
 The two readings of (5.1), that is, definitions of its peak acceleration, and the friction law of a result, in words.
 
-In the limit of slip at rest the acceleration jumps by the friction force. "As integrated" takes the peak that a
-numerical integration in time resolves, "literal supremum" the limit itself. They differ only for dry friction.
+At each stop, as the slip speed v goes to zero, acceleration under the set-valued law may have a short peak. The
+"literal supremum" counts its limit v -> 0+, too. "As integrated" counts what a numerical integration in time resolves.
+They differ only for dry friction that is rigid before it slides. See docs/theory.md.
 """
 
 from __future__ import annotations

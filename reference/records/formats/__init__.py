@@ -40,7 +40,7 @@ READERS = (  # the first that recognizes a file reads it
     Reader(name=jma.FORMAT, recognizes=jma.recognizes_jma, read=jma.read_jma),
     Reader(name=csv_table.FORMAT, recognizes=csv_table.recognizes_csv, read=csv_table.read_csv, suffix=".csv"),
 )
-READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}  # by suffix of the file
+READERS_BY_SUFFIX = {reader.suffix: reader for reader in READERS if reader.suffix}
 NETWORK_SUFFIX = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # raw files of networks
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of a scene's record that is a single file
 
