@@ -80,7 +80,10 @@ def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any
 
 
 def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) -> None:
-    """Teach numba an operation on two rows, or a row and a float; its result is a row. `instruction` makes its code."""
+    """Teach numba an operation on two rows, or on a row and a float, whose result is a row.
+
+    `instruction` generates its machine code from a builder and two rows.
+    """
 
     def typer(context: Any) -> Callable[..., Any]:
         """Return the function that tells numba the type of the operation's result."""
@@ -234,7 +237,10 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
-    """Return a function, for `intrinsic`, that finds a row's largest or smallest stage number; of a float: itself."""
+    """Return a function, for numba's `intrinsic`, that finds the smallest ("<") or largest (">") stage number of a row.
+
+    Of a float, it returns the float itself.
+    """
     # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
     # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
     # may be returned: an ordered comparison with NaN is false.
@@ -279,7 +285,7 @@ def is_finite(context: Any, values: Any) -> Any:
 
 @compiled
 def combine_columns(columns: NDArray[np.float64], values: Row) -> Row:
-    """Return matrix times vector `values`: the sum of its columns, each a row of `columns`, times their numbers."""
+    """Return the product of a matrix, given by its columns (STAGES or fewer, ROW_LENGTH), with the vector `values`."""
     total = row(columns, 0) * values[0]
     for m in range(1, columns.shape[0]):
         total += row(columns, m) * values[m]

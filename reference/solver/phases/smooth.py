@@ -28,7 +28,10 @@ def begin_smooth(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
-    """Return the step's length up to where creep becomes a slide, at v_reg (0: at its start), and next contact."""
+    """Return the length of a step h, s, up to where creep becomes a slide, at v_reg, and the next contact state.
+
+    The length is 0 if that happens at the start of the step. Lubricated sliding goes on.
+    """
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact

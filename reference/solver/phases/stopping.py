@@ -91,7 +91,11 @@ def propose_stretched_length(system: System, work: Workspace) -> float:
 
 @compiled
 def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Return the step's length to a kink of loading or temperature factor, or creep at v_reg (0: now); next contact."""
+    """Return the length of a step h up to its first event, and the next contact state; lengths are in stretched time.
+
+    An event is a kink of the loading or the temperature factor, or the speed v_reg, at which creep begins under the
+    regularized law. The length is 0 if creep begins at the start of the step.
+    """
     limit = next_kink(system, work, settings)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
         portion = locate_level_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
@@ -112,7 +116,10 @@ def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSe
 
 @compiled
 def commit_stopping_step(system: System, work: Workspace, settings: RunSettings, h: float, factor: float) -> int:
-    """Make time, slip direction and speed at a step's end the new ones near a stop; return the next contact state."""
+    """Make time, slip direction and speed at the end of a step near a stop the new ones; return the next contact state.
+
+    The length h, in stretched time, times `factor` would just have met the tolerance.
+    """
     # In stretched time a slide never reaches its stop: ln v falls without end. Three things end the phase. The platform
     # counts as stopped (`contact_after_stop`). Or it gathers speed again behind its slowest point: then plain time
     # resolves the slide once v / v' is a good part of a plain step. Or friction that rises with the speed balances the
@@ -172,7 +179,10 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integra
 
 @compiled
 def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
-    """Return REST or SLIDING if the platform has stopped, else STOPPING; set work.early_rest: time left to slide, s."""
+    """Return REST or SLIDING if the platform has stopped, else STOPPING.
+
+    If it rests, work.early_rest becomes the time, s, that it would still have slid.
+    """
     # A platform that friction can hold (excess <= 0) has stopped when the remaining slide changes nothing: its speed
     # and the time left are small (both bounds go with the root of the tolerance, since the distance to the stop is
     # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks in the turn before
