@@ -79,7 +79,7 @@ def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return (M, 4): cos and -sin of each of two phases, factors of Re A_n and Im A_n in v = Re(A_n exp(i alpha_n))."""
+    """Return cos and -sin of both phases, (M, 4): factors of Re A_n and Im A_n in v = Re(sum of A_n exp(i alpha_n))."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 

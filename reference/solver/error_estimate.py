@@ -218,7 +218,8 @@ def _estimate_error(before: RunPeaks, after: RunPeaks, share: float, tolerance: 
     """
     Return the errors (M, N) of the finer runs' peaks: their own estimates plus `share` of the runs' difference.
 
-    Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
+    Two runs that differ by less than rounding agree by chance: there the error is that of rounding. `tolerance` is that
+    of the finer runs inside a step, and `unit`, m/s^2, the size of the loading.
     """
     # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: their whole difference counts. Small
     # accelerations are differences of large ones, so their rounding is relative to the loading.

@@ -98,10 +98,12 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
 @compiled
 def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
-    Set polynomials for `speed_excess`: squared sliding speed minus `target`, m^2/s^2; h: length of the step, s.
+    Set what `speed_excess` needs for squared sliding speed minus `target`, m^2/s^2, in a step of length h, s.
 
-    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
-    the stages would miss a small speed in a step whose speed becomes large.
+    Rows 0 and 1 of work.powers are polynomials of the velocity along x and y; row 2 is that of the squared ratio of the
+    sliding speed to the horizontal one, and row 3 begins with the target. The velocity is the integral of the
+    polynomial through the accelerations. A polynomial through the squared speeds at the stages would miss a small speed
+    in a step whose speed becomes large.
     """
     for axis in range(2):
         expand_velocity(work, h, axis)

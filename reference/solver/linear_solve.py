@@ -120,6 +120,8 @@ def solve(factors: Array, pivots: Array, rhs: Array) -> None:
 @compiled
 def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
     """Solve linear equations by LU factors: overwrite the right side, `rhs` (blocks, ROW_LENGTH), by the solution."""
+    # Exchanges, then forward and back substitution, column by column. The diagonal of the factors has inverse pivots;
+    # `upper` and `lower` collect the solved unknowns of the first and of the second block.
     for block in range(blocks):
         for k in range(STAGES):
             place = int(pivots[block * STAGES + k])
@@ -143,7 +145,7 @@ def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None
 
 @compiled
 def subtract_column(factors: Array, mask: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
-    """Subtract `known` times column j of the factors, where the mask `mask` is 1, from the right side, `rhs`.
+    """Subtract `known` times column j of the factors, where `mask` is 1, from the right side, `rhs`.
 
     Only the blocks from `first` to before `end` change. `known` is the solved unknown j.
     """

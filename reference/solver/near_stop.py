@@ -93,7 +93,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
 
 @compiled
 def guess_near_stop(system: System, work: Workspace, h: float) -> None:
-    """Set the first guess at the stages: directions and log speeds on straight lines, accelerations as they are."""
+    """Set the first guess at the stages: directions and log speeds change linearly, accelerations are constant."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey

@@ -137,7 +137,7 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """Return the duration, s, about, of a step of length h, which near a stop is in stretched time (near_stop.py)."""
+    """Return how long, s, a step of length h takes, about: near a stop, h is in stretched time (near_stop.py)."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 

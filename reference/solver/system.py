@@ -20,11 +20,15 @@ SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
 CONSISTENT, PRINTED = 0, 1
 # The integers below are NumPy's, since numba compiles a function anew for every literal integer it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
-# Integer codes of the states of the contact
+# Integer codes of the states of the contact: rest; sliding; creep, which is slower than v_reg under the regularized
+# law; sliding under the lubricated law; a slide near its stop, in stretched time (near_stop.py); friction that yields
+# (contact/yielding.py), below its limit or at it.
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING, ELASTIC, PLASTIC = cast(
     "tuple[int, ...]", tuple(map(np.int64, range(7)))
 )
-# Integer codes of outcomes: how the equations of one step were solved, or how a whole run ended
+# Integer codes of outcomes, of the equations of one step or of a whole run: solved; not solved; at the rim of the
+# surface (4.1); at Painleve's paradox, where no acceleration exists; contact opens; too many steps; end of the
+# isolator's travel.
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 

@@ -75,7 +75,7 @@ def elasticity(system: System, reaction: Number) -> Number:
 def _acceleration_of_given_slip(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector independent of the reaction."""
+    """Return ax, ay, reaction over platform mass and inertia determinant for a slip vector independent of the load."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
         load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
@@ -86,7 +86,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia matrix determinant) by Newton's method, if friction varies with load."""
+    """Return ax, ay, reaction over platform mass and inertia determinant by Newton's method, if friction needs load."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for the reaction R, at the top of this
     # file, nonlinear: R (`plain` - phi(R) `taken`) = `drive`, with phi(R) = `factor`. The derivative of this equation
     # takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the

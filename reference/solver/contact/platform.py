@@ -61,7 +61,10 @@ def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
 def solve_platform_acceleration(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return the platform's (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector (equations.py)."""
+    """Return ax, ay, reaction over platform mass and inertia matrix determinant (equations.py) for a slip vector.
+
+    The slip vector is given for friction that depends on neither load nor temperature.
+    """
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
@@ -77,7 +80,7 @@ def solve_platform_acceleration(
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia matrix determinant, squared sliding speed) of a platform that moves."""
+    """Return ax, ay, reaction over mass, inertia matrix determinant and squared sliding speed of a moving platform."""
     squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, squared_speed)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, factor * vx, factor * vy)
@@ -88,8 +91,10 @@ def moving_acceleration(
 def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, ratio of full to horizontal speed) of a slide in the direction (ex, ey) at a
-    horizontal speed, m/s, which may be 0: then it is the limit at the stop."""
+    """Return ax, ay, reaction over platform mass, and ratio of full to horizontal speed, of a slide along (ex, ey).
+
+    `speed` is the horizontal one, m/s. It may be 0: then these are the limits at a stop.
+    """
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = solve_platform_acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
@@ -97,7 +102,10 @@ def acceleration_along(
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """Return squared tangential force minus squared friction limit, <= 0 where rest is possible, and reaction / m1."""
+    """Return squared tangential force minus squared friction limit at rest, m^2/s^4, and reaction, both per mass m1.
+
+    Rest is possible while the first is not positive and the second is positive.
+    """
     if system.small:
         excess, reaction = squared_rest_excess_small(system, load)
     else:

@@ -26,7 +26,7 @@ from reference.solver.system import ELASTIC, Load, System
 def elastic_acceleration(
     system: System, load: Load, squared_speed: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number]:
-    """Return (ax, ay, reaction / m1) for a friction force over m1, (qx, qy), m/s^2, by (T13) of docs/theory.md."""
+    """Return ax, ay and reaction under friction (qx, qy), both over the platform's mass, by (T13) of docs/theory.md."""
     px, py = load.px, load.py
     pressure = system.gravity + load.uz
     if system.small:

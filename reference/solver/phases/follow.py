@@ -170,7 +170,7 @@ def commit_within_travel(
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """Return by how much, rad, the fastest vibration's phase moves in a step h; 0 near a stop, where steps are short."""
+    """Return how far, rad, the fastest vibration's phase moves in a step h; 0 near a stop, where steps are short."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
@@ -248,7 +248,10 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 def limit_step_to_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float
 ) -> tuple[float, int]:
-    """Return the length of a step h up to its first event, 0 if that is at its start, and the contact from there on."""
+    """Return the length of a step h up to its first event, 0 if that is at its start, and the contact from there on.
+
+    Events are changes of contact, and near a stop also kinks of the loading.
+    """
     if contact == REST:
         return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:
