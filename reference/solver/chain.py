@@ -54,14 +54,16 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return L b_i, which couples body i to the acceleration of the body below it (see the top of this file); root is
-    the step length h times an eigenvalue of the collocation matrix."""
+    """Return the factor of the lower neighbor's acceleration in the equation of body i, with the opposite sign.
+
+    It is L b_i at the top of this file; root is the step length times an eigenvalue of the collocation matrix.
+    """
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return L c_i, which couples body i to the acceleration of the body above it; root as in `coupling_below`."""
+    """Return what `coupling_below` does, for the upper neighbor of body i: L c_i at the top of this file."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 

@@ -91,7 +91,8 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
         uy = uy * theta + powers[3, k]
         uz = uz * theta + powers[4, k]
     k_t = friction_temperature_factor_at(system, work.time + theta * work.elapsed[STAGES - 1])
-    excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz, k_t))
+    load = Load(px=work.x[0, 0], py=work.x[0, 1], fx=fx, fy=fy, ux=ux, uy=uy, uz=uz, k_t=k_t)
+    excess, _ = rest_excess(system, load)
     return excess
 
 

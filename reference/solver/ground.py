@@ -49,12 +49,14 @@ def record_acceleration_at(system: System, t: float) -> Ground:
     record, k_t = system.record, friction_temperature_factor_at(system, t)
     k = next_knot(record, t)
     if k == 0:
-        return Ground(record[0, 1], record[0, 2], record[0, 3], k_t)
+        return Ground(x=record[0, 1], y=record[0, 2], z=record[0, 3], k_t=k_t)
     if k == record.shape[0]:
-        return Ground(0.0, 0.0, 0.0, k_t)
+        return Ground(x=0.0, y=0.0, z=0.0, k_t=k_t)
     a, b = record[k - 1], record[k]
     s = (t - a[0]) / (b[0] - a[0])
-    return Ground(a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]), a[3] + s * (b[3] - a[3]), k_t)
+    return Ground(
+        x=a[1] + s * (b[1] - a[1]), y=a[2] + s * (b[2] - a[2]), z=a[3] + s * (b[3] - a[3]), k_t=k_t
+    )  # fmt: skip
 
 
 @compiled
@@ -67,9 +69,11 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
     a = system.amplitudes
     return Ground(
-        a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1,
-        friction_temperature_factor_at(system, t),
-    )  # fmt: skip
+        x=a[0, 0] * z0 + a[0, 1] * z1,
+        y=a[1, 0] * z0 + a[1, 1] * z1,
+        z=a[2, 0] * z0 + a[2, 1] * z1,
+        k_t=friction_temperature_factor_at(system, t),
+    )
 
 
 @compiled
@@ -104,10 +108,10 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
     work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
     return Ground(
-        a[0, 0] * z0.real + a[0, 1] * z1.real,
-        a[1, 0] * z0.real + a[1, 1] * z1.real,
-        a[2, 0] * z0.real + a[2, 1] * z1.real,
-        friction_temperature_factor_at(system, t),
+        x=a[0, 0] * z0.real + a[0, 1] * z1.real,
+        y=a[1, 0] * z0.real + a[1, 1] * z1.real,
+        z=a[2, 0] * z0.real + a[2, 1] * z1.real,
+        k_t=friction_temperature_factor_at(system, t),
     )
 
 

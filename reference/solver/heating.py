@@ -90,8 +90,10 @@ def _nodes_of_pieces(bounds: Array) -> Array:
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Return, (T,), m^2, the platform's squared displacement minus the squared one at which the slider uncovers the
-    center of the concave surface: negative while it is covered."""
+    """Return the platform's squared displacement minus the squared one that uncovers the center, (T,), m^2.
+
+    It is negative while the slider covers the center of the concave surface, which then heats up.
+    """
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
@@ -109,7 +111,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Return the integral over a piece of time, u = 0 to 1, of q(u) / sqrt(theta - u): the effect of its heat at theta.
+    """Return the integral of q(u) / sqrt(theta - u), u from 0 to 1 or theta: the effect at theta of a piece's heat q.
 
     `coefficients` are those of the polynomial q, lowest power first; theta counts from the start of the piece.
     """

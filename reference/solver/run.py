@@ -57,7 +57,8 @@ RIM_SQUARED_FRACTION = 0.998  # squared displacement over the rim's, rho^2, abov
 MAX_IDLE_PHASES = 4
 # Inertia matrix determinant over that without friction, below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # share of loading acceleration * period / 2 pi: a slower slide that cannot go on counts as rest
+# A slide that cannot go on counts as rest below this share of (loading's acceleration * RunSettings.period / 2 pi)
+MAX_CRAWL_SPEED = 1e-8
 
 
 @compiled

@@ -26,11 +26,11 @@ ERROR_ORDER = 7.0  # power of the step length with which the estimated error of 
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9  # share of RunSettings.period: a shorter step with an outcome such as the rim ends the run with it
+FATAL_STEP = 1e-9  # share of RunSettings.period; if a shorter step fails at the rim, say, that outcome ends the run
 MIN_STEP = 1e-16  # a step whose equations have no solution is shortened down to this length, in RunSettings.period
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
-NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method
+NEWTON_FRACTION = 0.01  # Newton's method ends if accelerations change by less than this share of the tolerance
 MAX_EXTRAPOLATION = 1.1  # largest ratio of a step to the last one at which the last polynomial gives its first guess
 
 

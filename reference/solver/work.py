@@ -23,7 +23,7 @@ from reference.solver.system import Array, Complex
 # the platform's mass, the squared speed and the inertia matrix determinant have one row each.
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
 # Numbers of the first of four rows in Workspace.slopes: derivatives of ax and ay by the x component of position,
-# velocity or driving acceleration, then both derivatives by the y component
+# velocity or driving acceleration, then those of both by the y component
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 # Row numbers in Workspace.turning, a slide at the stages near a stop: direction, rad, logarithm of the horizontal
 # speed, time, s, acceleration along and across the direction, both derivatives of these by the direction, ratio of full

@@ -33,7 +33,9 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
         fy += system.above[0, 1] * (work.x[1, 1] - work.x[0, 1])
         fx += system.damping_above[0, 0] * (work.v[1, 0] - work.v[0, 0])
         fy += system.damping_above[0, 1] * (work.v[1, 1] - work.v[0, 1])
-    return Load(work.x[0, 0], work.x[0, 1], fx, fy, ground.x, ground.y, ground.z, ground.k_t)
+    return Load(
+        px=work.x[0, 0], py=work.x[0, 1], fx=fx, fy=fy, ux=ground.x, uy=ground.y, uz=ground.z, k_t=ground.k_t
+    )  # fmt: skip
 
 
 @compiled

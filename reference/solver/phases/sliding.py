@@ -50,15 +50,15 @@ MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
 # A slide goes on in stretched time (dt = speed dtau), which resolves its turn, if it would stop in STOP_WITHIN_STEPS
 # steps or STOP_WITHIN_TIME periods, and until then the upper bodies' fastest vibration turns at most MAX_CHAIN_ANGLE.
-STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time (dt = speed dtau)
-STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time (dt = speed dtau)
-MAX_CHAIN_ANGLE = 0.5  # rad: if the upper bodies' fastest vibration turns further up to a stop, time is not stretched
+STOP_WITHIN_STEPS = 1.5  # a slide that would stop within so many steps goes on in stretched time (dt = speed dtau)
+STOP_WITHIN_TIME = 0.05  # a slide that would stop within so many periods goes on in stretched time (dt = speed dtau)
+MAX_CHAIN_ANGLE = 0.5  # rad; time is not stretched if the upper bodies' fastest vibration moves further until the stop
 # Longest step as share of the time to the stop: a longer one would end where the slip direction turns fast
 MAX_WAY_TO_STOP = 0.55
 # Smallest cosine of the angle between velocities at two successive stages: below it the step is not smooth, and fails
 MIN_TURN_COSINE = 0.3
 LEVEL_TOLERANCE = 1e-9  # relative distance of squared speed from v_reg^2, creep's limit, at which a slide becomes creep
-NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: below this squared speed at a stage, onset of creep (v_reg) is sought
+NEAR_LEVEL_FACTOR = 1.25  # creep is looked for if the squared speed at a stage is below this multiple of v_reg^2
 # A slide slower than this share of (friction deceleration * step length) aligns with the force within the step
 STIFF_SPEED_FRACTION = 0.03
 # Share of the driving acceleration (link, ground) to which a slide's smaller first guess is raised, for a direction
@@ -68,8 +68,8 @@ BARELY_SLIPPING_EXCESS = 1e-4
 # A slide from rest that cannot begin with a step of NEGLIGIBLE_STEP periods, or NEGLIGIBLE_RESPONSE times the time in
 # which friction responds to speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that slows to
 # v_reg, where creep begins, within the share NEGLIGIBLE_STEP of a step creeps from the start of this step.
-NEGLIGIBLE_STEP = 1e-6  # periods: rest replaces a slide that fails in a shorter step; also the share of a step, above
-NEGLIGIBLE_RESPONSE = 1e-3  # times friction's response time: rest replaces a slide that fails in a shorter step
+NEGLIGIBLE_STEP = 1e-6  # rest replaces a slide that fails in a step of fewer periods; also the share of a step, above
+NEGLIGIBLE_RESPONSE = 1e-3  # rest replaces a slide that fails in a step below this share of friction's response time
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace a slide which moves nothing
 MAX_LENGTH_RATIO = 3.0  # a step shorter than 1 / MAX_LENGTH_RATIO of the last one takes no first guess from that
 
