@@ -71,7 +71,8 @@ def _harmonic_responses(
     phase of the harmonic: of displacements relative to the ground, m, or if `absolute` of absolute accelerations.
     """
     # `rising` and `falling` are the quotients D(s, z) of the module's docstring, at z = i omega and z = -i omega; each
-    # pass through the loop over the orders differentiates them once more.
+    # pass through the loop over the orders differentiates them once more. `swinging` holds the shapes of the modes with
+    # omega > 0 and `weight` their factors; `drifting` is the motion of all bodies as one, where omega = 0.
     shape = natural.shape[:, :bodies]
     derivatives = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):

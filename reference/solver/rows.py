@@ -105,7 +105,12 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
 
 def _define_single(operation: Any, lower_call: Lower) -> None:
     """Teach numba a function of one row whose result is a row; lower_call generates its machine code."""
-    type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
+
+    def typer(context: Any) -> Callable[..., Any]:
+        """Return the function that tells numba the type of the result: a row of a row."""
+        return lambda number: _ROW if number == _ROW else None
+
+    type_callable(operation)(typer)
     lower_builtin(operation, _ROW)(lower_call)
 
 
@@ -137,6 +142,11 @@ def _lower_one_by_one(operation: Any) -> Lower:
     return lower_call
 
 
+def _lower_negation(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+    """Generate machine code that changes the sign of every number of a row."""
+    return builder.fneg(numbers[0])
+
+
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
     """Return a generator of machine code that selects the smaller ("<") or larger (">") numbers of two rows."""
 
@@ -157,7 +167,7 @@ for _operations, _instruction in (
 ):
     for _operation in _operations:
         _define_pair(_operation, _instruction)
-_define_single(operator.neg, lambda context, builder, signature, numbers: builder.fneg(numbers[0]))
+_define_single(operator.neg, _lower_negation)
 _define_single(abs, _lower_by_instruction("llvm.fabs"))
 _define_single(math.sqrt, _lower_by_instruction("llvm.sqrt"))
 for _function in (math.exp, math.expm1, math.log):

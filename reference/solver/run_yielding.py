@@ -93,6 +93,8 @@ def aim_at_event(
     A share other than 0 and 1 asks for a new step of that share of h, s, so that it ends at the event; aims counts
     such steps, and `begun` marks a first step behind a change of contact or a kink of friction.
     """
+    # `locate_event` finds the event on the polynomials of a long step. Steps that end there are solved anew, and each
+    # is lengthened or shortened by `shift_to_event`, until the end is accurate enough: Newton's method on whole steps.
     if aims > 0:
         shift = shift_to_event(system, work, contact, h)
         near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMED_STEPS

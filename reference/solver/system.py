@@ -175,7 +175,9 @@ def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
 
 def dry_friction_of(system: System) -> DryFriction:
     """Return the dry friction law of a system at k_T = 1, that is without the effect of temperature."""
-    return DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
+    return DryFriction(
+        slow=system.friction, fast=system.friction + system.rise, rate=system.rate, exponent=system.exponent
+    )
 
 
 def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:

@@ -64,6 +64,9 @@ def write_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
 @compiled
 def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
     """Set the derivatives of the platform's acceleration (rows: `set_slopes`) by the small equations (4.3)."""
+    # By (4.3) the acceleration is a = f - R (p / rho + s) + u (p . s) / rho, with R the reaction over m1, u the
+    # ground's acceleration and s = factor v the slip vector, which changes as s' = factor v' + bend (v^2)' v. `lever`
+    # is the change of (p . s) / rho, and `gain` is bend (v^2)'.
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)
@@ -95,11 +98,11 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
     reaction, determinant = row(stage, REACTION), row(stage, DETERMINANT)
     sx, sy, nx, ny = factor * vx, factor * vy, -px / radius, -py / radius
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
-    rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
-    lean = nx * vx + ny * vy
+    rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)  # q / n_z: (n_z q)' = -n . n' q / n_z
+    lean = nx * vx + ny * vy  # n . v: (n . s)' = n' . s + factor n . v' + bend (v^2)' n . v
     share = ratio / determinant  # change of the reaction per change of the load along the normal
     turn = reaction * (ratio - 1.0) / determinant
-    dn = -1.0 / radius
+    dn = -1.0 / radius  # derivative of n by position
     tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)
     for axis in range(system.axes):
         ex, ey = (1.0, 0.0) if axis == 0 else (0.0, 1.0)
