@@ -125,6 +125,7 @@ def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     """Return the collocation matrix's eigenvalue nearest to a guess, and its eigenvector, whose largest entry is 1."""
+    # Inverse iteration about the guess, by corrections: A vector - value vector (`missed`) is solved for and taken off.
     shifted = A - guess * np.eye(STAGES)
     vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())

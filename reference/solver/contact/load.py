@@ -86,7 +86,7 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return ax, ay, reaction over platform mass and inertia determinant by Newton's method, if friction needs load."""
+    """Return ax, ay, reaction over platform mass and inertia determinant if friction varies with the load or heat."""
     # A friction coefficient that falls with the load (n < 0) makes the equation for the reaction R, at the top of this
     # file, nonlinear: R (`plain` - phi(R) `taken`) = `drive`, with phi(R) = `factor`. The derivative of this equation
     # takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the
