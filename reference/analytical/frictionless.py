@@ -21,7 +21,8 @@ from reference.problem import Scene, exponents, loading_period
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# Time intervals per shortest period of loading and modes. SERIES_TERMS Taylor terms err by < 1e-14 of the motion there.
+# Number of time intervals per shortest period of the loading and the natural modes. On an interval this short, a Taylor
+# series of SERIES_TERMS terms is wrong by less than 1e-14 of the motion.
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12  # terms of the Taylor series in time on each interval
 # Largest |s t| at which (exp(s t) - 1 - s t) / s^2 is summed as a series of DRIFT_TERMS terms, to avoid cancellation
@@ -31,10 +32,11 @@ ROUNDING_ERROR = 1e-13  # relative rounding error of a natural frequency and of 
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Return peak accelerations, m/s^2, and errors, (M, N); largest displacement, m, and if it may reach its limit, (M,).
+    Return the peaks of the motions of N bodies at M pairs of loading phases, (M, 2), rad, as four arrays.
 
-    The scene is one that `is_linear` allows. Travel ends at phase pairs at which the platform may reach the end of its
-    travel, or without one the rim (4.1): such a motion has left the range of the small equations.
+    They are the largest absolute accelerations (M, N), m/s^2; their errors (M, N), m/s^2; the largest displacement of
+    the platform (M,), m; and a mask (M,), True where the platform may reach the end of its travel, or without one the
+    rim (4.1): such a motion has left the range of the small equations. The scene is one that `is_linear` allows.
     """
     natural = modes(scene)
     fastest = max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
@@ -62,9 +64,17 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
 def _harmonic_responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """Return complex displacements (absolute: accelerations) and time derivatives, each (T, N, axes, harmonics)."""
+    """
+    Return the response to each harmonic alone at the times (T,), s, and its time derivatives up to order `orders` - 1.
+
+    Each array (T, N, axes, harmonics) has the complex amplitudes A_k of Re(A_k exp(i alpha_k)), with alpha_k the
+    phase of the harmonic: of displacements relative to the ground, m, or if `absolute` of absolute accelerations.
+    """
+    # `rising` and `falling` are the quotients D(s, z) of the module's docstring, at z = i omega and z = -i omega; each
+    # pass through the loop over the orders differentiates them once more. `swinging` holds the shapes of the modes with
+    # omega > 0 and `weight` their factors; `drifting` is the motion of all bodies as one, where omega = 0.
     shape = natural.shape[:, :bodies]
-    parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
+    derivatives = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
         swings = natural.frequency[axis] > 0.0
         omega, swinging = natural.frequency[axis, swings], shape[axis][:, swings]
@@ -75,19 +85,22 @@ def _harmonic_responses(
                 continue
             forced = np.exp(s * time)[:, None]
             rising, falling = (_difference_quotient(s, root, time) for root in (1j * omega, -1j * omega))
-            for order, part in enumerate(parts):
-                part[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
+            for order, derivative in enumerate(derivatives):
+                derivative[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
                 if not absolute and not swings.all():
-                    part[:, :, axis, k] -= (
+                    derivative[:, :, axis, k] -= (
                         np.outer(_drift_derivative(s, time, order), drifting) * scene.amplitudes[axis, k]
                     )
                 rising, falling = 1j * omega * rising + forced, -1j * omega * falling + forced
                 forced = s * forced
-    return parts
+    return derivatives
 
 
 def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
-    """Return time derivative `order`, (T,), of (exp(s t) - 1 - s t) / s^2, displacement by acceleration exp(s t)."""
+    """Return time derivative number `order`, (T,), of a free body's displacement under the acceleration exp(s t).
+
+    From rest, this displacement is (exp(s t) - 1 - s t) / s^2.
+    """
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))
@@ -103,7 +116,7 @@ def _drift_derivative(s: complex, time: Array, order: int) -> Complex:
 
 
 def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
-    """Return (exp(s t) - exp(z t)) / (s - z), (T, N): response to exp(s t) of modes whose eigenvalues z are `roots`."""
+    """Return (exp(s t) - exp(z t)) / (s - z), (T, modes), for times t and the eigenvalues z of the modes, `roots`."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

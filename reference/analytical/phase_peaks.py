@@ -2,8 +2,9 @@
 Largest length over time of vectors that are linear in exp(i alpha_1) and exp(i alpha_2), at many phase pairs.
 
 A body's vector is v(t) = Re(A_1(t) exp(i alpha_1) + A_2(t) exp(i alpha_2)), one entry per axis. Time is cut into
-intervals on which A is a short series. The terms behind the slope bound |v| on the whole interval: intervals that
-cannot contain the largest length are skipped, and the others are searched on the series itself.
+intervals on which A is a short power series. Value and slope at the middle of an interval, with a bound on all later
+terms, bound |v| on the whole interval. Intervals that cannot contain the largest length are skipped, and the others are
+searched on the series itself.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ class PhaseSeries:
 
     @classmethod
     def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
-        """Return the series from time derivatives (T, N, axes, 2 harmonics) at midpoints; half: half an interval, s."""
+        """Return the series from the time derivatives at the middle of each interval, lowest order first, each of them
+        (T, N, axes, 2 harmonics); half: half the length of an interval, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
         sizes = np.abs(scaled).sum(axis=-1)  # upper bound of each term at any phases: both harmonics' amplitudes add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
@@ -57,39 +59,40 @@ class PhaseSeries:
 
 
 def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
-    """Return bodies' peak displacement or acceleration over time at phases (M, 2), rad, and its error: (M, N) each."""
+    """Return the largest length of v over time, a displacement or acceleration of each body, at the phases (M, 2), rad,
+    and its error; both are (M, N)."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
     _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
 def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
-    """Return a mask (M,): phases (M, 2), rad, where displacement or acceleration of body 1 may reach `bound`."""
+    """Return a mask (M,): True at those phases (M, 2), rad, at which the length of v of body 1 may reach `bound`."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
     may_reach = np.empty(len(phases), dtype=bool)
-    for m, turn in enumerate(_phase_factors(phases)):
-        _set_bounds(series.terms, series.rest, turn, 0, least, most)
+    for m, factors in enumerate(_phase_factors(phases)):
+        _set_bounds(series.terms, series.rest, factors, 0, least, most)
         may_reach[m] = most.max() >= bound * bound
     return may_reach
 
 
 def _phase_factors(phases: Array) -> Array:
-    """Return cos, -sin of both phases, (M, 4): factors of Re A_n, Im A_n, a motion's amplitudes by harmonic n."""
+    """Return cos and -sin of both phases, (M, 4): factors of Re A_n and Im A_n in v = Re(sum of A_n exp(i alpha_n))."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cache_on_disk(__file__)
-def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Set `least`, squared displacement or acceleration mid-interval, and `most`, upper bound in the interval, (T,)."""
+def _set_bounds(terms: Array, rest: Array, factors: Array, body: int, least: Array, most: Array) -> None:
+    """Set a body's |v|^2 at the middle of each interval, `least` (T,), and its upper bound in the interval, `most`."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
         for n in range(len(least)):
             value, slope = (
-                _power_coefficient(terms, turn, 0, body, axis, n),
-                _power_coefficient(terms, turn, 1, body, axis, n),
+                _power_coefficient(terms, factors, 0, body, axis, n),
+                _power_coefficient(terms, factors, 1, body, axis, n),
             )
             size = abs(value) + abs(slope) + rest[body, axis, n]
             least[n] += value * value
@@ -97,23 +100,26 @@ def _set_bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array,
 
 
 @njit(nogil=True)
-def _power_coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Return the coefficient of x^order, x scaled time in interval n, of motion along an axis; turn: phase factors."""
+def _power_coefficient(terms: Array, factors: Array, order: int, body: int, axis: int, n: int) -> float:
+    """Return the coefficient of x^order in a body's motion along an axis; x runs from -1 to 1 in interval n, and
+    `factors` (4,) is a row of `_phase_factors`."""
     total = 0.0
     for part in range(4):
-        total += turn[part] * terms[order, body, axis, part, n]
+        total += factors[part] * terms[order, body, axis, part, n]
     return total
 
 
 @cache_on_disk(__file__, nogil=True)
-def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
-    """Set `peaks` (M, N), largest displacements or accelerations, and their `errors`; turns: phase factors (M, 4)."""
+def _maximize_over_time(terms: Array, rest: Array, factors: Array, peaks: Array, errors: Array) -> None:
+    """Set `peaks` (M, N), the largest |v| over time, and their `errors` (M, N); factors: `_phase_factors` (M, 4)."""
+    # Branch and bound: the largest value at the middle of any interval is a lower bound of the peak, so only intervals
+    # whose upper bound exceeds the best value so far are searched.
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
-    for m in range(len(turns)):
+    for m in range(len(factors)):
         for body in range(bodies):
-            _set_bounds(terms, rest, turns[m], body, least, most)
+            _set_bounds(terms, rest, factors[m], body, least, most)
             best = 0.0
             for n in range(intervals):
                 best = max(best, least[n])
@@ -123,7 +129,7 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
                     continue
                 for axis in range(axes):
                     for order in range(orders):
-                        series[axis, order] = _power_coefficient(terms, turns[m], order, body, axis, n)
+                        series[axis, order] = _power_coefficient(terms, factors[m], order, body, axis, n)
                 value, error = _maximize_on_interval(series)
                 best = max(best, value)
                 possible = max(possible, value + error)
@@ -133,7 +139,8 @@ def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, e
 
 @njit(nogil=True)
 def _maximize_on_interval(series: Array) -> tuple[float, float]:
-    """Return the largest squared displacement or acceleration on an interval and its error; series: terms (axes, P)."""
+    """Return the largest |v|^2 on an interval and its error; series: coefficients of x^p along each axis, (axes, P)."""
+    # The error is the slope times the last step of Newton's method.
     best, place = -1.0, 0.0
     for x in STARTING_POINTS:
         value, _, _ = _squared_length(series, x)
@@ -155,7 +162,7 @@ def _maximize_on_interval(series: Array) -> tuple[float, float]:
 
 @njit(nogil=True)
 def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
-    """Return squared displacement or acceleration, slope, curvature at scaled time x in [-1, 1]; series: terms."""
+    """Return |v|^2 and its first two derivatives by x, at x in [-1, 1]; series: coefficients of x^p, (axes, P)."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

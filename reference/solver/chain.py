@@ -1,7 +1,8 @@
 """
 The linear bodies above the platform (4.4), eliminated from a collocation step at a cost linear in their number.
 
-For each eigenvector (channel) j of the collocation matrix this is a tridiagonal system with L = (h lambda_j)^2,
+A channel is an eigenvector of the collocation matrix; lambda_j is its eigenvalue. In channel j, the
+equations of a step of length h are tridiagonal in the accelerations a_i of the bodies, with L = (h lambda_j)^2:
     (1 + L (b_i + c_i)) a_i - L b_i a_{i-1} - L c_i a_{i+1} = r_i,   b_i = k_{i,i-1}/m_i,  c_i = k_{i+1,i}/m_i,
 solved from the top down: d_i = e_i + L b_i with e_i = 1 + L c_i e_{i+1} / d_{i+1}, which subtracts nothing and so keeps
 its digits however stiff a link is. With dampers L b_i becomes L b_i + h lambda_j c_{i,i-1}/m_i, and L c_i becomes
@@ -30,13 +31,14 @@ from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
 from reference.solver.work import Workspace
 
-# Columns of the matrix from stage values to channels (eigenbasis of the collocation matrix), real parts first
+# Columns of the matrix from stage values to channels (eigenbasis of the collocation matrix); the result has the real
+# parts of all channels, then the imaginary parts
 TO_CHANNELS_COLUMNS = columns_as_rows(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
 # Columns of the matrix back, from channels (eigenbasis of the collocation matrix) to the stages of a step
 FROM_CHANNELS_COLUMNS = columns_as_rows(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
-# Transforms to the collocation matrix's eigenbasis of two functions over a step: 1, and the elapsed share of the step
+# Two functions over a step in channels (collocation eigenbasis): the constant 1, and the elapsed share of the step
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = exact_product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# Complex matrix for each eigenvector j of the collocation matrix: it keeps j's part of stage values (`set_feedback`)
+# For each channel j (collocation eigenvector) the complex matrix that projects stage values on it, for `set_feedback`
 _CHANNEL_RESPONSES = [exact_product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
 # Real and imaginary parts of _CHANNEL_RESPONSES, a matrix per collocation eigenvector, transposed for compiled code
 CHANNEL_RESPONSES_REAL, CHANNEL_RESPONSES_IMAGINARY = (
@@ -52,13 +54,16 @@ CHANNEL_ROUNDING = float(
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return minus the lower neighbor's acceleration factor in body i's equation; root: h * collocation eigenvalue."""
+    """Return the factor of the lower neighbor's acceleration in the equation of body i, with the opposite sign.
+
+    It is L b_i at the top of this file; root is the step length times an eigenvalue of the collocation matrix.
+    """
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """Return minus the upper neighbor's acceleration factor in body i's equation; root: h * collocation eigenvalue."""
+    """Return what `coupling_below` does, for the upper neighbor of body i: L c_i at the top of this file."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 
@@ -71,7 +76,12 @@ def reciprocal(number: complex) -> complex:
 
 @compiled
 def eliminate_chain(system: System, work: Workspace, h: float) -> None:
-    """Eliminate upper bodies from step equations (length h, s): set work.inverse (1 / pivot), work.gain (response)."""
+    """
+    Eliminate the bodies above the platform from the equations of a step of length h, s.
+
+    This sets the inverse pivots, work.inverse, and work.gain: how the link force on the platform responds to the
+    platform's acceleration, in each channel (eigenvector of the collocation matrix).
+    """
     # For each collocation eigenvector j only neighboring bodies are coupled: L b_i is `coupling_below`, L c_i
     # `coupling_above`. So elimination from the top down takes one pivot d_i = e_i + L b_i per body. Here
     # e_i = 1 + L c_i e_{i+1} / d_{i+1} (`upper`; `inverse` is 1 / d_i) replaces the usual difference
@@ -91,7 +101,8 @@ def eliminate_chain(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_feedback(system: System, work: Workspace, h: float) -> None:
-    """Set work.feedback: force of the bodies above on the platform per unit of its acceleration at each stage."""
+    """Set work.feedback (axis, m, k): the change of the link force on the platform at stage k, over its mass, per unit
+    of the platform's acceleration at stage m."""
     feedback = work.feedback
     for axis in range(system.axes):
         for m in range(STAGES):
@@ -121,7 +132,8 @@ def transform_from_channels(values: Row) -> Row:
 
 @compiled
 def set_chain_loads(system: System, work: Workspace, h: float) -> None:
-    """Set loads on upper bodies, and the platform's driving acceleration (link, ground) if it kept its velocity."""
+    """Set the right sides of the equations of the bodies above the platform, work.load, and work.free: the driving
+    acceleration (link force over mass minus ground acceleration) of a platform that keeps its velocity."""
     # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
     # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
     # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that

@@ -69,7 +69,8 @@ def _radau_nodes(stages: int) -> np.ndarray:
 
 
 def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
-    """Return weights (T, STAGES) to interpolate stage values at step shares theta (T,) or integrate from 0 to them."""
+    """Return weights (T, STAGES) of the stage values that give their polynomial at the shares theta (T,) of a step, or
+    if `integrated` the integral of this polynomial from 0 to theta."""
     basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
@@ -77,9 +78,10 @@ def _interpolation_weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
 
 
 NODES = _radau_nodes(STAGES)  # (STAGES,) c_i: times of the stages from the start of a step, as shares of its length
-A = _interpolation_weights(NODES, True)  # Butcher's matrix: takes stage values to integrals from step start to stages
+# Butcher's matrix, the collocation matrix: it takes stage values to their integrals from the step's start to each stage
+A = _interpolation_weights(NODES, True)
 A2 = exact_product(A, A)  # matrix that takes stage values to their second integrals up to the stages
-# Weights that extrapolate stage values to the start of a step, where the known true value shows the error
+# Weights that extrapolate stage values to the start of a step; the true value known there shows the error
 AT_START = _interpolation_weights(np.zeros(1), False)[0]
 # Matrix that takes stage values to the coefficients of their polynomial in theta (share of a step), lowest power first
 MONOMIALS = _solve_linear(np.vander(NODES, increasing=True), np.eye(STAGES))
@@ -95,14 +97,16 @@ def _defect_polynomial() -> np.ndarray:
 
 # Coefficients of the interpolation error's shape in a step: polynomial in its share theta, 1 at start, 0 at the stages
 DEFECT_POLYNOMIAL = _defect_polynomial()
-# Weights: a weighted sum of stage accelerations, times step length, is the error of velocity extrapolated to its start
+# Weights whose sum with stage accelerations, times the step length, is the error of the velocity when its polynomial is
+# extrapolated to the start of the step
 VELOCITY_AT_START = exact_product(AT_START[None, :], A)[0]
 # Coefficients, highest power first, of the integral of DEFECT_POLYNOMIAL from the start of a step (theta = 0)
 DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
 def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the collocation matrix's eigenvalues, one per conjugate pair, and matrices to its eigenbasis and back."""
+    """Return the eigenvalues of the collocation matrix A, one of each conjugate pair (CHANNELS,), the matrix from stage
+    values to its eigenbasis (CHANNELS, STAGES), and the matrix back, whose result's real part counts."""
     # A has one real eigenvalue and three conjugate pairs. The numbers in the channels of a pair are conjugate, so one
     # channel is kept and counted twice. LAPACK's eigenvalues are rounded to GUESSED_DIGITS and refined by inverse
     # iteration; the inverse of the eigenvectors gets one step of Newton's method (X <- 2 X - X V X), which makes it
@@ -121,6 +125,7 @@ def _compute_channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _eigenpair_near(guess: complex) -> tuple[complex, np.ndarray]:
     """Return the collocation matrix's eigenvalue nearest to a guess, and its eigenvector, whose largest entry is 1."""
+    # Inverse iteration about the guess, by corrections: A vector - value vector (`missed`) is solved for and taken off.
     shifted = A - guess * np.eye(STAGES)
     vector = _solve_linear(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())

@@ -8,8 +8,8 @@ Everything is per platform mass m1. The inputs, all horizontal pairs in x, y:
   pressure  g + zeta'', m/s^2
   speed2    squared sliding speed v-bar^2 of (3.8), m^2/s^2
   sx, sy    slip vector: friction coefficient times the horizontal part of the slip direction, mu v_h / v-bar
-Both are linear in the slip vector, which alone depends on the friction law (contact/friction.py). All are floats at one
-instant, or rows at all stages of a step (rows.py).
+The friction force of both equations is linear in the slip vector, which alone depends on the friction law
+(contact/friction.py). All inputs are floats at one instant, or rows at all stages of a step (rows.py).
 """
 
 from __future__ import annotations
@@ -69,8 +69,9 @@ def small_acceleration(
     """
     Return (ax, ay, reaction N / platform mass m1, 1 as determinant) by the paper's small-vibration equations (4.3).
 
-    Friction is mu [M (g + zeta'') w - u (p . w) / rho], mu its coefficient. As in the paper, terms with xi'' p are
-    kept, and those with the acceleration and the spring force, which are of the same order, are left out.
+    Friction is mu [M (g + zeta'') w - u (p . w) / rho], with mu its coefficient and w the direction of slip. As in the
+    paper, terms with xi'' p are kept, and those with the acceleration and the spring force, which are of the same
+    order, are left out.
     """
     reaction = mass_ratio * pressure
     lever = (px * sx + py * sy) / radius
@@ -86,7 +87,8 @@ def small_acceleration(
 def vertical_motion(
     px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
 ) -> tuple[Number, Number, Number]:
-    """Return height above the sphere's lowest point, m, vertical velocity and acceleration (2.1), (3.4)-(3.5)."""
+    """Return height above the sphere's lowest point, m, vertical velocity, m/s, and vertical acceleration, m/s^2, of a
+    body that moves along the sphere, by (2.1) and (3.4)-(3.5)."""
     depth = sqrt(radius * radius - px * px - py * py)  # depth below the sphere's center: -Delta of (3.3)
     vz = (px * vx + py * vy) / depth
     az = (vx * vx + vy * vy + vz * vz + px * ax + py * ay) / depth

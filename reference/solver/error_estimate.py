@@ -74,10 +74,11 @@ def peaks_at(
     system: System, phases: Array, settings: RunSettings, tolerance: float, until: Array | None = None
 ) -> RunPeaks:
     """
-    Return peak accelerations of a run from rest for each pair of loading phases (M, 2), rad; tolerance: inside steps.
+    Return the peak accelerations of a run from rest for each pair of loading phases (M, 2), rad.
 
-    The errors are estimates from this run alone: interpolation at the peak, and drift of the steps before it. Runs that
-    do not end early make no step beyond `until` (M,), s, by default the end of the motion.
+    `tolerance` is the largest relative error of the accelerations inside a step. The errors of the peaks are estimates
+    from this run alone: interpolation at the peak, and what the steps before it have missed of fast vibrations. Runs
+    that do not end early make no step beyond `until` (M,), s, by default the end of the motion.
     """
     rest = np.zeros((len(system.below), 2))
     settings = settings._replace(tolerance=tolerance)
@@ -96,7 +97,10 @@ def peaks_from(
     record: StepRecord,
     until: Array | None = None,
 ) -> RunPeaks:
-    """Return a run's peak accelerations from x, v (N, 2) per pair of loading phases (M, 2), rad; fill `record`."""
+    """Return the peak accelerations of M runs, one for each pair of loading phases (M, 2), rad; see `peaks_at`.
+
+    All start with the positions x and velocities v of the bodies, (N, 2). `record` takes the steps if it has room.
+    """
     count, bodies = len(phases), len(x)
     value, error = np.empty((count, bodies)), np.empty((count, bodies))
     ends = np.empty((len(RunPeaks._fields) - 2, count))
@@ -110,9 +114,11 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return a run's peak accelerations, steps, system with friction's temperature factor k_T; phase: loading's two, rad.
+    Return the peak accelerations of one run, the record of its steps, and its system.
 
-    x, v (N, 2): start. With heating, the run is repeated until k_T no longer changes; the last change counts as error.
+    The run starts with positions x and velocities v, (N, 2); `phase` (2,) are the loading's phases, rad. With heating,
+    it is repeated until friction's temperature factor k_T(t), which the system then has, no longer changes; the last
+    change of the peaks counts as error.
     """
     # The number of steps is known only afterwards: a run that outgrows its record is made again with a larger one.
     # With heating, k_T as a function of time follows from the heat of the run before. The first run has the k_T of
@@ -161,12 +167,12 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     # Every phase pair has its own temperature factor of friction, k_T(t), which a coarse run estimates first
     if len(system.heat) and len(phases) and not len(system.k_t):
         rest, coarse = np.zeros((len(system.below), 2)), settings._replace(tolerance=TOLERANCE_RATIO * tolerance)
-        begun = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]
-        each = [peaks_with_error(its, pair[None], settings, whole) for its, pair in zip(begun, phases)]
+        heated = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]
+        each = [peaks_with_error(own, pair[None], settings, whole) for own, pair in zip(heated, phases)]
         return RunPeaks(*map(np.concatenate, zip(*each)))
     after = peaks_at(system, phases, settings, tolerance)
-    known = settings.early & (after.code == SOLVED)
-    until = np.where(known, after.last_peak + EVENT_MARGIN * settings.period, system.duration)
+    ends_early = settings.early & (after.code == SOLVED)
+    until = np.where(ends_early, after.last_peak + EVENT_MARGIN * settings.period, system.duration)
     coarser = settings._replace(early=False, damped_weight=1.0)
     before = peaks_at(system, phases, coarser, TOLERANCE_RATIO * tolerance, until)
     peaks, disagree = _compare_runs(before, after, tolerance, system, settings)
@@ -196,7 +202,7 @@ def _where_unfinished(before: RunPeaks, after: RunPeaks) -> npt.NDArray[np.bool_
 def _compare_runs(
     before: RunPeaks, after: RunPeaks, tolerance: float, system: System, settings: RunSettings
 ) -> tuple[RunPeaks, Array]:
-    """Return the finer run's peaks with errors, and, for M phase pairs, True where the runs disagree by too much."""
+    """Return the peaks of the finer runs, `after`, with their errors, and a mask (M,) of those that need finer ones."""
     plain = system.rate == 0.0 and system.law != YIELDING
     share = DIFFERENCE_FRACTION if plain else DIFFERENCE_FRACTION_VARYING_FRICTION
     error = _estimate_error(before, after, share, tolerance, settings.unit)
@@ -210,9 +216,10 @@ def _compare_runs(
 
 def _estimate_error(before: RunPeaks, after: RunPeaks, share: float, tolerance: float, unit: float) -> Array:
     """
-    Return estimated errors (M, N) of the finer run's peaks: its own estimates plus `share` of the two runs' difference.
+    Return the errors (M, N) of the finer runs' peaks: their own estimates plus `share` of the runs' difference.
 
-    Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
+    Two runs that differ by less than rounding agree by chance: there the error is that of rounding. `tolerance` is that
+    of the finer runs inside a step, and `unit`, m/s^2, the size of the loading.
     """
     # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: their whole difference counts. Small
     # accelerations are differences of large ones, so their rounding is relative to the loading.

@@ -14,8 +14,8 @@ from reference.solver.rows import Row, broadcast_like, put, row, row_maximum, wh
 from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SQUARED_SPEED, VELOCITY, Workspace
 
-# Integer codes of events: the polynomial in work.powers[0] passes zero, friction at rest reaches its limit, the sliding
-# speed passes a given one. Integers of NumPy: numba would compile a function again for every literal (system.py).
+# Integer codes of events: the polynomial in work.powers[0], a quantity less a given number, passes zero; friction at
+# rest reaches its limit; the sliding speed passes a given one. NumPy integers: see system.py.
 LEVEL_EVENT, ONSET_EVENT, SPEED_EVENT = np.int64(0), np.int64(1), np.int64(2)
 NOT_IN_STEP = 2.0  # theta (share of the step) that stands for "no event in the step", in which theta goes from 0 to 1
 # Number of golden sections in the search for a short event: one that lasts less than 1e-6 of a step may be missed
@@ -31,7 +31,10 @@ NEAR_LIMIT = 0.5
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
-    """Return the first share of the step at which the polynomial of stage `values` passes `target` from `start`."""
+    """Return the share theta of the step at which a quantity first passes `target`, or NOT_IN_STEP.
+
+    `values` are the quantity at the stages, and `start` is its value at the start of the step.
+    """
     expand_level(work, values, target)
     return locate_first_event(system, work, LEVEL_EVENT, 1.0 if start < target else -1.0, 0.0, start - target)
 
@@ -45,7 +48,10 @@ def expand_level(work: Workspace, values: Row, target: float) -> None:
 
 @compiled
 def locate_onset(system: System, work: Workspace) -> float:
-    """Return the first share theta of the step at which friction cannot hold the platform; set stage reactions."""
+    """Return the share theta of a step at rest from which friction cannot hold the platform any longer, or NOT_IN_STEP.
+
+    It also sets the reactions at the stages, in work.stage.
+    """
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
@@ -59,7 +65,11 @@ def locate_onset(system: System, work: Workspace) -> float:
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Set work.powers: polynomials over a rest step of the driving (link minus ground) and the ground acceleration."""
+    """Set the polynomials over a step at rest that `excess_at` evaluates.
+
+    Rows 0 and 1 of work.powers get those of the driving acceleration (link force over mass minus ground acceleration)
+    along x and y, and rows 2 to 4 those of the ground acceleration along x, y and z.
+    """
     for axis in range(2):
         set_coefficients(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -68,7 +78,10 @@ def expand_drive(work: Workspace) -> None:
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Return squared tangential force minus its squared limit at share theta of a rest step, after `expand_drive`."""
+    """Return squared tangential force minus squared friction limit, m^2/s^4, at share theta of a step at rest.
+
+    `expand_drive` comes before.
+    """
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -78,17 +91,20 @@ def excess_at(system: System, work: Workspace, theta: float) -> float:
         uy = uy * theta + powers[3, k]
         uz = uz * theta + powers[4, k]
     k_t = friction_temperature_factor_at(system, work.time + theta * work.elapsed[STAGES - 1])
-    excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz, k_t))
+    load = Load(px=work.x[0, 0], py=work.x[0, 1], fx=fx, fy=fy, ux=ux, uy=uy, uz=uz, k_t=k_t)
+    excess, _ = rest_excess(system, load)
     return excess
 
 
 @compiled
 def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
-    Set polynomials for `speed_excess`: squared sliding speed minus `target`, m^2/s^2; h: length of the step, s.
+    Set what `speed_excess` needs for squared sliding speed minus `target`, m^2/s^2, in a step of length h, s.
 
-    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
-    the stages would miss a small speed in a step whose speed becomes large.
+    Rows 0 and 1 of work.powers are polynomials of the velocity along x and y; row 2 is that of the squared ratio of the
+    sliding speed to the horizontal one, and row 3 begins with the target. The velocity is the integral of the
+    polynomial through the accelerations. A polynomial through the squared speeds at the stages would miss a small speed
+    in a step whose speed becomes large.
     """
     for axis in range(2):
         expand_velocity(work, h, axis)
@@ -124,7 +140,11 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """Return way (1: rise, -1: fall) times an event's quantity at share theta: force or speed excess, or polynomial."""
+    """Return an event's quantity at share theta of the step, with the sign that makes it positive behind the event.
+
+    The quantity is the excess of force or speed, or the polynomial in work.powers[0]. `way` is 1 if the event is that
+    the quantity rises through zero, and -1 if it falls.
+    """
     if event == ONSET_EVENT:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED_EVENT else evaluate_polynomial(work.powers[0], theta))
@@ -132,11 +152,14 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """Return the first share of a step behind `begin` with `event_value` > 0; start: event's quantity at `begin`."""
-    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter event may lie between
-    # two points: the value passes zero and returns. This is possible only if the largest value seen lies below zero by
-    # no more than the largest change from point to point. Then a golden-section search looks for a positive value
-    # around the largest one. Once a positive value is found, `locate_crossing` locates the passage before it.
+    """Return the first share theta of a step, from `begin` on, at which `event_value` is positive, or NOT_IN_STEP.
+
+    `start` is the event's quantity at `begin`.
+    """
+    # SEARCH_POINTS show every event that lasts longer than the distance between two of them. A shorter event may lie
+    # between two points: the value passes zero and returns. This is possible only if the largest value seen lies below
+    # zero by no more than the largest change from point to point. Then a golden-section search looks for a positive
+    # value around the largest one. Once a positive value is found, `locate_crossing` locates the passage before it.
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] <= begin:
@@ -166,7 +189,7 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 
 @compiled
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
-    """Return the share of the step, between low and high, at which `event_value` turns positive, by regula falsi."""
+    """Return the share theta of the step, between low and high, at which `event_value` turns positive."""
     # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
     # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
     # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so
@@ -198,9 +221,10 @@ def locate_crossing(system: System, work: Workspace, event: int, way: float, low
 @compiled
 def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Set work.edges to start and end of each part of a step with the quantity of `event` >= 0; return their number.
+    Find the parts of a step in which the quantity of `event` is at least 0 (or at most 0, if `way` is -1).
 
-    Edges are in theta, the share of the step. With `way` = -1: parts with <= 0. start: the quantity at theta = 0.
+    Return their number, and set work.edges to start and end of each in turn, as shares theta of the step. `start` is
+    the quantity at theta = 0.
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:

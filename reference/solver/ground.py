@@ -16,7 +16,7 @@ SERIES_ROUNDING = 1e-17  # share of a harmonic: its Taylor series ends at the fi
 
 @compiled
 def next_knot(record: Array, t: float) -> int:
-    """Return the index of the first row of a table whose time, in column 0, is later than t; row count if none is."""
+    """Return the index of the first row of a table whose time, in column 0, is later than t, or the number of rows."""
     low, high = 0, record.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -29,7 +29,7 @@ def next_knot(record: Array, t: float) -> int:
 
 @compiled
 def friction_temperature_factor_at(system: System, t: float) -> float:
-    """Return k_T, the temperature factor of friction, at time t: piecewise polynomial, constant after the last one."""
+    """Return k_T, the temperature factor of friction, at time t, s, from the piecewise polynomial in system.k_t."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
@@ -42,16 +42,21 @@ def friction_temperature_factor_at(system: System, t: float) -> float:
 
 @compiled
 def record_acceleration_at(system: System, t: float) -> Ground:
-    """Return a record's ground acceleration (linear between samples, zero after the last) and friction's k_T at t."""
+    """Return the ground acceleration of a recorded motion at time t, with the temperature factor of friction.
+
+    The record is linear between its samples, and zero after the last one.
+    """
     record, k_t = system.record, friction_temperature_factor_at(system, t)
     k = next_knot(record, t)
     if k == 0:
-        return Ground(record[0, 1], record[0, 2], record[0, 3], k_t)
+        return Ground(x=record[0, 1], y=record[0, 2], z=record[0, 3], k_t=k_t)
     if k == record.shape[0]:
-        return Ground(0.0, 0.0, 0.0, k_t)
+        return Ground(x=0.0, y=0.0, z=0.0, k_t=k_t)
     a, b = record[k - 1], record[k]
     s = (t - a[0]) / (b[0] - a[0])
-    return Ground(a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]), a[3] + s * (b[3] - a[3]), k_t)
+    return Ground(
+        x=a[1] + s * (b[1] - a[1]), y=a[2] + s * (b[2] - a[2]), z=a[3] + s * (b[3] - a[3]), k_t=k_t
+    )  # fmt: skip
 
 
 @compiled
@@ -64,14 +69,19 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
     a = system.amplitudes
     return Ground(
-        a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1,
-        friction_temperature_factor_at(system, t),
-    )  # fmt: skip
+        x=a[0, 0] * z0 + a[0, 1] * z1,
+        y=a[1, 0] * z0 + a[1, 1] * z1,
+        z=a[2, 0] * z0 + a[2, 1] * z1,
+        k_t=friction_temperature_factor_at(system, t),
+    )
 
 
 @compiled
 def set_harmonics(system: System, work: Workspace, t: float) -> None:
-    """Set work.waves, the ground's two harmonics at t, complex; set_ground_at_stages and next_ground start there."""
+    """Set work.waves to the ground's two harmonics at time t, s, as complex numbers of amplitude 1 at t = 0.
+
+    `set_ground_at_stages` and `next_ground` start from them.
+    """
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
@@ -89,22 +99,27 @@ def set_harmonic_step_factors(system: System, work: Workspace, h: float) -> None
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """Return ground acceleration and temperature factor k_T at t: time of set_harmonics, one step later per call."""
+    """Return the ground acceleration and the temperature factor k_T at t, and move the harmonics on by one step.
+
+    The first t is that of `set_harmonics`, and each further one is later by the step of `set_harmonic_step_factors`.
+    """
     if system.record.shape[0] > 0:
         return record_acceleration_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
     work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
     return Ground(
-        a[0, 0] * z0.real + a[0, 1] * z1.real,
-        a[1, 0] * z0.real + a[1, 1] * z1.real,
-        a[2, 0] * z0.real + a[2, 1] * z1.real,
-        friction_temperature_factor_at(system, t),
+        x=a[0, 0] * z0.real + a[0, 1] * z1.real,
+        y=a[1, 0] * z0.real + a[1, 1] * z1.real,
+        z=a[2, 0] * z0.real + a[2, 1] * z1.real,
+        k_t=friction_temperature_factor_at(system, t),
     )
 
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
     """Set ground acceleration and temperature factor k_T at a step's stages, after `set_harmonics` at its start."""
+    # A Taylor series of the harmonics about the start of the step gives all stages at once, without the sines and
+    # exponentials of every stage. Long steps and records take each stage by itself.
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
@@ -130,7 +145,10 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
 
 @compiled
 def expand_harmonics(work: Workspace, e0: complex, e1: complex) -> int:
-    """Set work.series, the Taylor series of both harmonics in a step (factors exp(e0), exp(e1)); return its length."""
+    """Set work.series to the Taylor series of both harmonics in the elapsed share of a step; return its length.
+
+    Over the whole step, the harmonics change by the factors exp(e0) and exp(e1).
+    """
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
     enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
     for n in range(SERIES_TERMS):

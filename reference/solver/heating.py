@@ -23,11 +23,11 @@ from reference.support.build_cache import cache_on_disk
 
 # Number of Newton iterations that find when the slider begins or stops covering the center of the concave surface
 NEWTON_STEPS = 8
-# Cuts of time in the heat integral after a kink of friction power, in shares of a step: k_T changes like a root of time
+# After a kink of the friction power k_T changes like a root of time, so the step behind it is cut at these shares of it
 GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
 MIN_PIECE = 1e-10  # share of the motion's duration: a cut of time (heat integral) closer to the last is left out
-# Time since a piece of heating, in its lengths, beyond which its effect on the temperature is integrated by quadrature,
-# and beyond which by moments (sum, mean time, variance) of its heat. The latter holds for blocks of pieces as well.
+# Time is cut into pieces; a block is several neighboring pieces (`past_temperature`). The moments of a block's heat are
+# its total, its mean time and the variance of its time.
 FAR_DISTANCE = 4.0  # time since a piece of heating began, over its length: beyond it, quadrature gives its effect
 BLOCK_DISTANCE = 30.0  # time since a block of heating began, over its length: beyond it the moments of its heat suffice
 MAX_LAST_CHANGE = 1e-14  # change of the temperature factor k_T below which its iteration in a piece of time ends
@@ -90,7 +90,10 @@ def _nodes_of_pieces(bounds: Array) -> Array:
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Return squared displacement minus that up to which the slider covers the concave surface's center, (T,), m^2."""
+    """Return the platform's squared displacement minus the squared one that uncovers the center, (T,), m^2.
+
+    It is negative while the slider covers the center of the concave surface, which then heats up.
+    """
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
@@ -108,7 +111,11 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**NUMBA_OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Return the integral of q(u) / sqrt(theta - u) over a piece u = 0 to 1: how its heat q acts at a time theta."""
+    """Return the integral of q(u) / sqrt(theta - u), u from 0 to 1 or theta: the effect at theta of a piece's heat q.
+
+    `coefficients` are those of the polynomial q, lowest power first; theta counts from the start of the piece.
+    """
+    # Moment k is the integral of u^k / sqrt(theta - u); each follows from the one before by partial integration.
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -120,7 +127,7 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
 
 @njit(**NUMBA_OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
-    """Return the integral of q(u) / sqrt(theta - u) over a piece by quadrature, for a time theta long after it."""
+    """Return `conduction_integral` by quadrature, for a time theta long after the piece; power: q at its nodes."""
     total = 0.0
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -138,7 +145,11 @@ def past_temperature(
     coefficients: Array,
     moments: Array,
 ) -> float:
-    """Return the temperature, degrees C, at `time` in a piece of time, as far as heat of earlier pieces causes it."""
+    """Return the temperature, degrees C, at `time`, s, in piece number `piece`, without the heat of this piece itself.
+
+    Of the K pieces, start and length (K,) are in s, `heat` (K, S) is at their nodes, `coefficients` (K, S) are those of
+    its polynomials, and `moments` (levels, K, 3) those of `describe_block`, row l for blocks of 2^l pieces.
+    """
     # The temperature is a sum over all pieces before. For pieces long past, only sum, mean time and variance of the
     # heat of a block of pieces count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
     # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
@@ -166,7 +177,10 @@ def past_temperature(
 
 @njit(**NUMBA_OPTIONS)
 def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficients: Array, k_t: Array) -> None:
-    """Find by iteration, for one piece of time, its heat and k_T, the temperature factor; each depends on the other."""
+    """Find by iteration, for one piece of time, its heat and its temperature factor k_t, each of which needs the other.
+
+    past (S,): temperature at the nodes by earlier heat; power (S,): heat at k_T = 1.
+    """
     for _ in range(MAX_ITERATIONS):
         change = 0.0
         for k in range(STAGES):
@@ -184,7 +198,11 @@ def solve_piece(past: Array, length: float, power: Array, heat: Array, coefficie
 
 @cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
-    """Set temperature factor k_T at S nodes of K time pieces; power: Heat.rise * friction power at k_T = 1."""
+    """Set the temperature factor k_t (K, S) at the S nodes of K pieces of time, which have `start` and `length`, s.
+
+    power (K, S) is Heat.rise times the power of friction at k_T = 1; initial is the temperature at first, degrees C.
+    """
+    # Piece by piece; each completed pair of blocks is joined to one of twice the length, as in a binary counter.
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
@@ -205,7 +223,7 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
 
 @njit(**NUMBA_OPTIONS)
 def describe_block(start: float, length: float, heat: Array, moments: Array) -> None:
-    """Set `moments` of one piece of time to its total heat, and the mean and the variance of the time of this heat."""
+    """Set `moments` (3,) of a piece of time to its total heat, and the mean and variance of the time of this heat."""
     total, center, variance = 0.0, 0.0, 0.0  # loops: whole arrays would take three times as long to compile
     for k in range(STAGES):
         total += NODE_WEIGHTS[k] * heat[k]

@@ -1,8 +1,9 @@
 """
 Gaussian elimination with row pivoting for the small dense systems of one step, without allocation.
 
-A system has one or two blocks of STAGES rows. Its matrix is kept by columns, each with one row (rows.py) per block:
-entry k of block b of column j is `columns[j, b, k]`.
+A system has one or two blocks of STAGES equations each. Its matrix is kept by columns, `columns` (n, blocks,
+ROW_LENGTH) for n equations: `columns[j, b, k]` is the factor of unknown j in equation k of block b. The last place of
+each row (rows.py) is not used. `pivots` (n,) are the places, ROW_LENGTH * b + k, of the exchanged equations.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ _PLACES = np.arange(MOST_BLOCKS * STAGES)  # row and column numbers of the large
 
 
 def _ones_where(chosen: NDArray[np.bool_]) -> Array:
-    """Return a mask (n, blocks, ROW_LENGTH) of the columns of a matrix: 1 where `chosen` (n, n) is True, else 0."""
+    """Return a mask for `columns` (see the top of this file): 1 where `chosen` (n, n) is True, by column and row."""
     ones = np.zeros((len(_PLACES), MOST_BLOCKS, ROW_LENGTH))
     ones[:, :, :STAGES] = chosen.reshape(-1, MOST_BLOCKS, STAGES)
     return ones
@@ -35,18 +36,18 @@ BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)  # mask for matrix colu
 
 @compiled
 def factorize(columns: Array, pivots: Array) -> bool:
-    """Overwrite a matrix (n, blocks, ROW_LENGTH) by its LU factors; return False if it is singular or not finite."""
+    """Overwrite a matrix, (n, blocks, ROW_LENGTH) by columns, by its LU factors; return False if it is singular."""
     return factorize_blocks(columns, pivots, 1) if pivots.shape[0] == STAGES else factorize_blocks(columns, pivots, 2)
 
 
 @compiled
 def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
-    """Overwrite a matrix with 1 or 2 `blocks` by its LU factors; return False if it is singular or not finite."""
+    """Overwrite a matrix by its LU factors (`factorize`); blocks: 1, or 2 for motions along x and y."""
     # Right-looking LU by columns (Golub and Van Loan, Matrix Computations, 3.2): a column lies in one or two rows of
-    # rows.py, so an elimination takes one multiplication and one subtraction for all its entries at once. Masks leave
-    # the entries above and on the diagonal alone. The diagonal keeps the inverse pivots. Rows are exchanged only where
-    # a pivot is below MIN_PIVOT of the largest entry (threshold pivoting), which is rare: in short steps these matrices
-    # are near the identity.
+    # rows.py (`upper` and `lower`), so an elimination takes one multiplication and one subtraction for all its entries.
+    # Masks leave the entries above and on the diagonal alone. The diagonal keeps the inverse pivots. Rows are exchanged
+    # only where a pivot is below MIN_PIVOT of the largest entry (threshold pivoting), which is rare: in short steps
+    # these matrices are near the identity.
     n = blocks * STAGES
     for block in range(blocks):
         for k in range(STAGES):
@@ -60,25 +61,25 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
             inverse = 1.0 / columns[i, block, k]
             if not abs(inverse) < np.inf:
                 return False
-            near = far = inverse * (row(BELOW_DIAGONAL, (i, 0)) * row(columns, (i, 0)))
+            upper = lower = inverse * (row(BELOW_DIAGONAL, (i, 0)) * row(columns, (i, 0)))
             if block == 0:
-                put(columns, (i, 0), row(ABOVE_DIAGONAL, (i, 0)) * row(columns, (i, 0)) + near)
+                put(columns, (i, 0), row(ABOVE_DIAGONAL, (i, 0)) * row(columns, (i, 0)) + upper)
             if blocks == MOST_BLOCKS:
-                far = inverse * (row(BELOW_DIAGONAL, (i, 1)) * row(columns, (i, 1)))
-                put(columns, (i, 1), row(ABOVE_DIAGONAL, (i, 1)) * row(columns, (i, 1)) + far)
+                lower = inverse * (row(BELOW_DIAGONAL, (i, 1)) * row(columns, (i, 1)))
+                put(columns, (i, 1), row(ABOVE_DIAGONAL, (i, 1)) * row(columns, (i, 1)) + lower)
             for j in range(i + 1, n):
                 factor = columns[j, block, k]
                 if block == 0:
-                    put(columns, (j, 0), row(columns, (j, 0)) - factor * near)
+                    put(columns, (j, 0), row(columns, (j, 0)) - factor * upper)
                 if blocks == MOST_BLOCKS:
-                    put(columns, (j, 1), row(columns, (j, 1)) - factor * far)
+                    put(columns, (j, 1), row(columns, (j, 1)) - factor * lower)
             columns[i, block, k] = inverse
     return True
 
 
 @compiled
 def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> float:
-    """Return the largest absolute entry of column i below the diagonal; block: the one with the diagonal entry."""
+    """Return the largest absolute entry of column i below the diagonal, whose entry is in block number `block`."""
     sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))
@@ -88,7 +89,10 @@ def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> f
 
 @compiled
 def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
-    """Return the place (ROW_LENGTH * block + row) of a column's largest entry, from row `first` of `block` on."""
+    """Return the place, ROW_LENGTH * block + k, of the largest entry of a column (blocks, ROW_LENGTH).
+
+    The search begins at entry `first` of block number `block`, the diagonal.
+    """
     best, place = 0.0, block * ROW_LENGTH + first
     for b in range(block, blocks):
         for k in range(first if b == block else 0, STAGES):
@@ -99,7 +103,7 @@ def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
 
 @compiled
 def exchange(column: Array, block: int, k: int, place: int) -> None:
-    """Exchange entry k of `block` in a column with that at place = ROW_LENGTH * (its block) + (its row)."""
+    """Exchange entry k of block number `block` in a column with the one at `place`, which is ROW_LENGTH * block + k."""
     other, m = place // ROW_LENGTH, place % ROW_LENGTH
     column[block, k], column[other, m] = column[other, m], column[block, k]
 
@@ -115,7 +119,9 @@ def solve(factors: Array, pivots: Array, rhs: Array) -> None:
 
 @compiled
 def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
-    """Solve linear equations with 1 or 2 `blocks` by LU factors: overwrite the right side, `rhs`, by the solution."""
+    """Solve linear equations by LU factors: overwrite the right side, `rhs` (blocks, ROW_LENGTH), by the solution."""
+    # Exchanges, then forward and back substitution, column by column. The diagonal of the factors has inverse pivots;
+    # `upper` and `lower` collect the solved unknowns of the first and of the second block.
     for block in range(blocks):
         for k in range(STAGES):
             place = int(pivots[block * STAGES + k])
@@ -124,24 +130,27 @@ def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None
     for block in range(blocks):
         for k in range(STAGES):
             subtract_column(factors, BELOW_DIAGONAL, block * STAGES + k, rhs, rhs[block, k], block, blocks)
-    near = far = 0.0 * row(rhs, 0)
+    upper = lower = 0.0 * row(rhs, 0)
     for block in range(blocks - 1, -1, -1):
         for k in range(STAGES - 1, -1, -1):
             j = block * STAGES + k
             known = rhs[block, k] * factors[j, block, k]
             subtract_column(factors, ABOVE_DIAGONAL, j, rhs, known, 0, block + 1)
-            near += known * row(IDENTITY, (j, 0))
-            far += known * row(IDENTITY, (j, 1))
-    put(rhs, 0, near)
+            upper += known * row(IDENTITY, (j, 0))
+            lower += known * row(IDENTITY, (j, 1))
+    put(rhs, 0, upper)
     if blocks == MOST_BLOCKS:
-        put(rhs, 1, far)
+        put(rhs, 1, lower)
 
 
 @compiled
-def subtract_column(factors: Array, part: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
-    """Subtract `known` times the entries of column j that mask `part` selects from blocks of the right side, `rhs`."""
+def subtract_column(factors: Array, mask: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
+    """Subtract `known` times column j of the factors, where `mask` is 1, from the right side, `rhs`.
+
+    Only the blocks from `first` to before `end` change. `known` is the solved unknown j.
+    """
     for b in range(first, end):
-        put(rhs, b, row(rhs, b) - known * (row(part, (j, b)) * row(factors, (j, b))))
+        put(rhs, b, row(rhs, b) - known * (row(mask, (j, b)) * row(factors, (j, b))))
 
 
 @compiled

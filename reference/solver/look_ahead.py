@@ -84,7 +84,10 @@ def rough_step_length(system: System, settings: RunSettings) -> float:
 
 @compiled
 def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
-    """Return when, s, a rough run of steps h, s, reaches 0.85 of the largest acceleration or displacement; or inf."""
+    """Return the time, s, at which a rough run may reach LARGE_FRACTION of the largest acceleration or displacement.
+
+    It is infinite if the run does not. The run goes from the present state to the end of the motion in steps h, s.
+    """
     bodies = work.x.shape[0]
     for i in range(bodies):  # x1, v1 keep the state here, as the next accurate step sets them anew
         for axis in range(2):
@@ -103,7 +106,7 @@ def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
-    """Make one rough step h, s; return True if it may reach 0.85 of the largest acceleration or displacement."""
+    """Make one rough step of length h, s; return True if it may reach LARGE_FRACTION of a largest value so far."""
     move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
     set_chain_acceleration(system, work, ground)
@@ -136,8 +139,8 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     """
     Update the platform's velocity, work.v[0], by the forces of one rough step of length h, s.
 
-    Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near its largest
-    displacement, the rim, the end of the travel, liftoff or Painleve's paradox.
+    Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near one of these: its
+    largest displacement so far, the rim, the end of the travel, liftoff, Painleve's paradox.
     """
     # Four cases. (1) At rest under the set-valued law and held: the acceleration is the ground's; where the drive comes
     # near the limit, the accurate run may have slipped, so the acceleration of a stop counts. (2) Moving, friction
@@ -190,7 +193,10 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
 def bound_held_acceleration(
     system: System, load: Load, ground: Ground, excess: float, reaction: float
 ) -> tuple[bool, float]:
-    """Return, for a platform at rest, True if it may slip, and an upper bound on its absolute acceleration, m/s^2."""
+    """Return True if a platform at rest may slip, and a bound on its absolute acceleration, m/s^2.
+
+    excess and reaction: the values of `rest_excess`.
+    """
     largest = sqrt(ground.x * ground.x + ground.y * ground.y)
     limit = static_limit(system, load.k_t, reaction)
     nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -202,7 +208,7 @@ def bound_held_acceleration(
 
 @compiled
 def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) -> tuple[float, float]:
-    """Return friction over normal force, as a vector along slip, at the start of a rough look-ahead step; 0 at rest."""
+    """Return the slip vector (friction over normal force, along x and y) at the start of a rough step; 0 at rest."""
     if squared_speed == 0.0:
         return 0.0, 0.0
     contact = SLIDING
@@ -217,9 +223,10 @@ def slip_in_state(system: System, vx: float, vy: float, squared_speed: float) ->
 @compiled
 def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground, friction: float) -> float:
     """
-    Return a bound on a slide's absolute acceleration, m/s^2, up to its stop; v: velocity, g: frictionless acceleration.
+    Return a bound on the horizontal absolute acceleration, m/s^2, of a slide on its way to its stop.
 
-    The direction of the slide turns from that of v to that of g (stop_arc.py), and friction, m/s^2, with it.
+    The direction of the slide turns from that of its velocity v to that of g, the acceleration without friction
+    (stop_arc.py), and friction, m/s^2, turns with it.
     """
     # The absolute acceleration is d - f e: d the drive with the ground's acceleration, f friction, e the direction of
     # slip. It is the larger, the more e points against d. The smallest cosine between them over the turn, less a margin

@@ -55,7 +55,10 @@ MAX_CHANGE = 1e3  # a step is unsolved if slip directions, rad, or log speeds ch
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
-    """Solve a step h in stretched time (dt = speed dtau), slip directions to `tolerance`, rad; return its outcome."""
+    """Solve a step of length h in stretched time (dt = speed dtau), and return its outcome (system.py).
+
+    The iteration ends when slip directions, rad, change by at most `tolerance`.
+    """
     # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
     # (`set_motion_at_stages`). These give ground, springs and dampers (`set_drive_at_stages`): a fixed-point iteration
     # for the chain, which converges as the chain hardly moves in it. The forces give the platform's acceleration along
@@ -90,7 +93,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
 
 @compiled
 def guess_near_stop(system: System, work: Workspace, h: float) -> None:
-    """Set the first guess of slip directions, speeds and accelerations at the stages from those at the step's start."""
+    """Set the first guess at the stages: directions and log speeds change linearly, accelerations are constant."""
     ex, ey = slip_direction_cosines(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
@@ -126,7 +129,10 @@ def set_motion_at_stages(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def set_drive_at_stages(system: System, work: Workspace, h: float) -> float:
-    """Set stage accelerations (platform: without contact force); return upper bodies' largest velocity change, m/s."""
+    """Set the accelerations of the upper bodies, and the driving acceleration of the platform, at the stages.
+
+    Return by how much, in velocity over the step, m/s, the accelerations of the upper bodies have changed at most.
+    """
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0
@@ -163,7 +169,10 @@ def is_inside_rim(system: System, work: Workspace) -> bool:
 
 @compiled
 def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
-    """Set the platform's acceleration along and across its slip direction at stages; if `fresh`, also derivatives."""
+    """Set the platform's acceleration along and across its slip direction at the stages.
+
+    If `fresh`, set its derivatives as well: by the direction, and by the log speed where friction depends on speed.
+    """
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
@@ -188,7 +197,10 @@ def set_path_acceleration(system: System, work: Workspace, fresh: bool) -> None:
 
 @compiled
 def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
-    """Correct slip directions and log speeds by a Newton iteration; return the largest change. fresh: renew matrix."""
+    """Correct slip directions, rad, and log speeds by one iteration of Newton's method; return the largest change.
+
+    With `fresh`, its matrix is computed and factorized again.
+    """
     # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, linearized by the
     # derivative of the sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from
     # the corrected directions, since constant friction hardly depends on the speed. Where friction depends on the

@@ -35,7 +35,10 @@ SETTLED_FRACTION = 0.9  # above this share of the largest so far, an acceleratio
 
 @compiled
 def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[float, float, float]:
-    """Return sum of squares of the first `components` polynomials in work.powers at theta, and its two derivatives."""
+    """Return the sum of squares of polynomials at share theta of a step, and its first two derivatives by theta.
+
+    The polynomials are the first `components` rows of work.powers: those of a vector along x, y and perhaps z.
+    """
     value = slope = curvature = 0.0
     for n in range(components):
         p = dp = ddp = 0.0
@@ -51,7 +54,7 @@ def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[floa
 
 @compiled
 def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
-    """Return the largest sum of squares of `components` polynomials of work.powers in [low, high], and its place."""
+    """Return the largest value of `sum_of_squares` for theta between low and high, and the theta at which it occurs."""
     # SEARCH_POINTS are twice as many as the stages, so the best point is next to the largest maximum of a step that
     # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
     # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
@@ -86,7 +89,7 @@ def largest_square(work: Workspace, components: int, low: float, high: float) ->
 
 @compiled
 def velocity_defect(work: Workspace, body: int, axis: int) -> float:
-    """Return the error, over the step length, of a body's velocity extrapolated from the stages to the step's start."""
+    """Return a body's velocity error per step length, m/s^2, when extrapolated from the stages to the step's start."""
     missed = 0.0
     for k in range(STAGES):
         missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
@@ -112,7 +115,7 @@ def link_error_rate(system: System, work: Workspace, h: float, body: int) -> flo
 
 @compiled
 def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
-    """Return how large an error of the acceleration friction makes per error of the platform's velocity, 1/s."""
+    """Return the error of the platform's acceleration per error of its velocity, 1/s, that friction causes."""
     if contact == REST:
         return 0.0
     if contact != SLIDING:
@@ -144,7 +147,10 @@ def interpolation_error(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best, largest squared accelerations, to those in part of a step; return True if one is >= 0.9 peak."""
+    """Raise work.best, the largest squared accelerations so far, to those between the shares low and high of a step.
+
+    Return True if an acceleration reaches SETTLED_FRACTION of the largest of its body.
+    """
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
@@ -163,7 +169,10 @@ def update_peaks(system: System, work: Workspace, contact: int, h: float, low: f
 
 @compiled
 def update_peak_by_limit(work: Workspace, body: int, squared: float) -> None:
-    """Raise a body's largest squared acceleration to a one-sided limit at a stop or onset: no interpolation error."""
+    """Raise a body's largest squared acceleration to `squared`, m^2/s^4, if that is larger.
+
+    `squared` is a one-sided limit at a stop or an onset of sliding, which has no interpolation error.
+    """
     if squared >= SETTLED_FRACTION**2 * work.best[body]:
         work.last_peak = work.last_large = work.time
     if squared > work.best[body]:

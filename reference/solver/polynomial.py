@@ -15,13 +15,13 @@ POWERS = STAGES + 2  # number of coefficients of a position, the second integral
 
 @compiled
 def integrate_to_stages(values: Row) -> Row:
-    """Return for every stage the integral over theta (share of a step) from 0 of the polynomial through `values`."""
+    """Return the integral over theta (share of a step), from 0 to each stage, of the polynomial through `values`."""
     return combine_columns(A_COLUMNS, values)
 
 
 @compiled
 def set_coefficients(values: Row, coefficients: Array) -> None:
-    """Set `coefficients` (POWERS,), lowest power of step share theta first, of a polynomial through stage `values`."""
+    """Set `coefficients` (POWERS,), lowest power of theta first, of the polynomial through stage `values`."""
     put(coefficients, (), combine_columns(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
@@ -29,7 +29,7 @@ def set_coefficients(values: Row, coefficients: Array) -> None:
 
 @compiled
 def evaluate_polynomial(coefficients: Array, theta: float) -> float:
-    """Return the value at step share theta of a polynomial through stages with `coefficients`, lowest power first."""
+    """Return the value at share theta of a step of a polynomial with `coefficients`, lowest power first."""
     value = 0.0
     for k in range(STAGES - 1, -1, -1):
         value = value * theta + coefficients[k]

@@ -80,7 +80,10 @@ def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any
 
 
 def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) -> None:
-    """Teach numba an operation on two rows, or a row and a float; its result is a row. `instruction` makes its code."""
+    """Teach numba an operation on two rows, or on a row and a float, whose result is a row.
+
+    `instruction` generates its machine code from a builder and two rows.
+    """
 
     def typer(context: Any) -> Callable[..., Any]:
         """Return the function that tells numba the type of the operation's result."""
@@ -102,7 +105,12 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
 
 def _define_single(operation: Any, lower_call: Lower) -> None:
     """Teach numba a function of one row whose result is a row; lower_call generates its machine code."""
-    type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
+
+    def typer(context: Any) -> Callable[..., Any]:
+        """Return the function that tells numba the type of the result: a row of a row."""
+        return lambda number: _ROW if number == _ROW else None
+
+    type_callable(operation)(typer)
     lower_builtin(operation, _ROW)(lower_call)
 
 
@@ -134,6 +142,11 @@ def _lower_one_by_one(operation: Any) -> Lower:
     return lower_call
 
 
+def _lower_negation(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
+    """Generate machine code that changes the sign of every number of a row."""
+    return builder.fneg(numbers[0])
+
+
 def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
     """Return a generator of machine code that selects the smaller ("<") or larger (">") numbers of two rows."""
 
@@ -154,7 +167,7 @@ for _operations, _instruction in (
 ):
     for _operation in _operations:
         _define_pair(_operation, _instruction)
-_define_single(operator.neg, lambda context, builder, signature, numbers: builder.fneg(numbers[0]))
+_define_single(operator.neg, _lower_negation)
 _define_single(abs, _lower_by_instruction("llvm.fabs"))
 _define_single(math.sqrt, _lower_by_instruction("llvm.sqrt"))
 for _function in (math.exp, math.expm1, math.log):
@@ -234,7 +247,10 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduce_by(relation: str) -> Callable[..., Any]:
-    """Return a function, for `intrinsic`, that finds a row's largest or smallest stage number; of a float: itself."""
+    """Return a function, for numba's `intrinsic`, that finds the smallest ("<") or largest (">") stage number of a row.
+
+    Of a float, it returns the float itself.
+    """
     # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
     # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
     # may be returned: an ordered comparison with NaN is false.
@@ -279,7 +295,7 @@ def is_finite(context: Any, values: Any) -> Any:
 
 @compiled
 def combine_columns(columns: NDArray[np.float64], values: Row) -> Row:
-    """Return matrix times vector `values`: the sum of its columns, each a row of `columns`, times their numbers."""
+    """Return the product of a matrix, given by its columns (STAGES or fewer, ROW_LENGTH), with the vector `values`."""
     total = row(columns, 0) * values[0]
     for m in range(1, columns.shape[0]):
         total += row(columns, m) * values[m]

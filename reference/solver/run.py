@@ -57,7 +57,8 @@ RIM_SQUARED_FRACTION = 0.998  # squared displacement over the rim's, rho^2, abov
 MAX_IDLE_PHASES = 4
 # Inertia matrix determinant over that without friction, below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # share of loading acceleration * period / 2 pi: a slower slide that cannot go on counts as rest
+# A slide that cannot go on counts as rest below this share of (loading's acceleration * RunSettings.period / 2 pi)
+MAX_CRAWL_SPEED = 1e-8
 
 
 @compiled
@@ -76,7 +77,7 @@ def initial_contact(system: System, work: Workspace) -> int:
 
 @compiled
 def classify_failure(system: System, work: Workspace, contact: int, settings: RunSettings, code: int) -> int:
-    """Return why a run cannot go on: SOLVED (nearly at its end), RIM (4.1), PAINLEVE (paradox), or `code` itself."""
+    """Return how a run ends that failed with `code`: SOLVED if it is nearly at its end, RIM, PAINLEVE, or `code`."""
     if code == TRAVEL:
         return code
     if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * settings.period:
@@ -115,8 +116,8 @@ def integrate(system: System, work: Workspace, settings: RunSettings, record: St
     """
     Follow the motion from the state in work.x, work.v; return its outcome (system.py), at work.time.
 
-    A run that may end early does so where no peak can grow any more (look_ahead.py), any other with the first whole
-    step beyond `until`, s. work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
+    A run that may end early does so where no peak can grow any more (look_ahead.py). Any other run ends with the first
+    step that goes beyond `until`, s. work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
     # Two kinds of states lie on the border of two phases, and would make the run fail or circle without end.
     # A slide whose drive exceeds the friction limit by rounding alone has no acceleration that a step could resolve: it
@@ -154,7 +155,7 @@ def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> Non
 
 @compiled
 def set_results(work: Workspace, code: int, peaks: Array, reading_errors: Array, ends: Array, m: int) -> None:
-    """Write outcome, peak accelerations and their errors of run m, with its loading phases, into the result arrays."""
+    """Write outcome `code`, peaks and their errors of run number m into the result arrays of `integrate_runs`."""
     ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
     ends[4, m] = work.last_peak
     for i in range(peaks.shape[1]):
@@ -168,12 +169,13 @@ def integrate_runs(
     until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
-    Follow the motion from x, v (N, 2) for every pair of loading phases (M, 2), rad, until (M,), s, or an early end.
+    Follow M motions from positions x and velocities v, (N, 2), one for every pair of loading phases (M, 2), rad.
 
-    Fill peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), m/s^2, their errors inside
-    their steps with the drift of the steps before. Fill ends (5, M): outcome (system.py), instant (s) and number of
-    steps of each run, the platform's largest displacement (m), and the end of the last step with an acceleration near
-    the largest (s).
+    Each ends at `until` (M,), s, or early (`integrate`). Filled in are peaks (M, N), the largest absolute
+    accelerations, m/s^2, and reading_errors (M, N), m/s^2: the error of interpolation where the peak was read off, with
+    what the steps before have missed of fast vibrations. The rows of `ends` (5, M) are outcome (system.py), instant (s)
+    and number of steps of each run, the platform's largest displacement (m), and the end of the last step with an
+    acceleration near the largest (s).
     """
     work = allocate_workspace(peaks.shape[1])
     system_reference, record_reference = system_by_reference(system), record_by_reference(record)

@@ -72,7 +72,10 @@ MIN_EVENT_TIME = 1e-12  # share of RunSettings.period: an event this soon after 
 
 @compiled
 def try_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float, held: bool) -> int:
-    """Solve one step, elastic or plastic; return its outcome, UNSOLVED also for a step that is too short."""
+    """Solve one step of length h, s, elastic or plastic; return its outcome, UNSOLVED also if it is too short.
+
+    With `held`, the contact keeps its state whatever the force, and the step may be shorter.
+    """
     if is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
         return UNSOLVED
     set_step_loads(system, work, h)
@@ -85,7 +88,13 @@ def try_step(system: System, work: Workspace, contact: int, settings: RunSetting
 def aim_at_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, aims: int, begun: bool
 ) -> tuple[float, bool]:
-    """Return the phase's end as share of the step (1: keep the step), and True if the phase ends with this step."""
+    """Return where the phase ends as a share of the step, 1 if the step stands, and True if the phase ends with it.
+
+    A share other than 0 and 1 asks for a new step of that share of h, s, so that it ends at the event; aims counts
+    such steps, and `begun` marks a first step behind a change of contact or a kink of friction.
+    """
+    # `locate_event` finds the event on the polynomials of a long step. Steps that end there are solved anew, and each
+    # is lengthened or shortened by `shift_to_event`, until the end is accurate enough: Newton's method on whole steps.
     if aims > 0:
         shift = shift_to_event(system, work, contact, h)
         near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMED_STEPS
@@ -99,7 +108,10 @@ def aim_at_event(
 def accept_step(
     system: System, work: Workspace, record: StepRecord, contact: int, h: float, angle: float, factor: float
 ) -> bool:
-    """Make the end of the step the new state; return True if the platform reaches the isolator's travel in it."""
+    """Make the end of a step h, s, the new state; return True if the platform reaches the isolator's travel in it.
+
+    angle: of `vibration_angle`; factor: of `length_factor`.
+    """
     work.edges[0], work.edges[1] = 0.0, 1.0
     outcome = commit_within_travel(system, work, record, h, contact, 1, angle)
     commit_force(work)
@@ -111,7 +123,7 @@ def accept_step(
 
 @compiled
 def change_contact(system: System, work: Workspace, record: StepRecord, contact: int, since: float) -> int:
-    """Change from elastic to plastic or back, prepare the new phase and return it; since: start of the old one, s."""
+    """Prepare the phase that follows an elastic or plastic one, and return it; since: when the old one began, s."""
     if contact == ELASTIC:
         record_stick(record, since, work.time)
     following = PLASTIC if contact == ELASTIC else ELASTIC
@@ -121,7 +133,10 @@ def change_contact(system: System, work: Workspace, record: StepRecord, contact:
 
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
-    """Follow a motion, friction elastic below its limit, until a step passes `until`, s: see `integrate`, run.py."""
+    """Follow a motion under friction that yields until a step passes `until`, s; otherwise as `integrate` in run.py."""
+    # The loop's state: `idle` counts successive phases of zero length, `shorter` is the length of a step that was cut
+    # to end at an event (infinite if none was), `aims` counts such cuts, `begun` marks a first step behind a change of
+    # contact or a kink of friction, and `since` is the time of the last change of contact.
     # The checks of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)

@@ -38,7 +38,7 @@ def sample_motion(record: StepRecord, times: Array) -> SampledMotion:
 
 
 def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near: NDArray[np.bool_]) -> SampledMotion:
-    """Return the motion at T instants: shares theta (T,) of steps number row (T,); near (T,): True if near a stop."""
+    """Return the motion at T instants, each at share theta of step number row; near: True for steps near a stop."""
     # Weights (T, S) by which stage values give their polynomial at theta, and its integral up to theta
     value = theta[:, None] ** np.arange(STAGES) @ MONOMIALS
     raised = theta[:, None] ** np.arange(1, STAGES + 1) / np.arange(1, STAGES + 1) @ MONOMIALS
@@ -52,11 +52,11 @@ def _sample_steps(record: StepRecord, row: NDArray[np.intp], theta: Array, near:
     v[near] = np.einsum("tnas,ts->tna", record.velocities[rows], weights)
     x[near] = np.einsum("tnas,ts->tna", record.position[rows], weights)
     total = np.einsum("tnas,ts->tna", record.total[row], value)
-    return SampledMotion(x, v, total, (record.reaction[row] * value).sum(axis=1))
+    return SampledMotion(x=x, v=v, total=total, reaction=(record.reaction[row] * value).sum(axis=1))
 
 
 def step_instants(record: StepRecord, count: int, most: int) -> Array:
-    """Return about `count` increasing instants (T,), s, at most `most`: some in every step, one just before its end."""
+    """Return about `count`, at most `most`, increasing instants, s: some in every step, and one just before its end."""
     steps = int(record.counts[0])
     start = record.start[:steps]
     places = int(np.clip(count // max(steps, 1), MIN_INSTANTS_PER_STEP, MAX_INSTANTS_PER_STEP))
@@ -71,7 +71,7 @@ def step_instants(record: StepRecord, count: int, most: int) -> Array:
 
 
 def _locate_in_steps(clock: Array, times: Array) -> Array:
-    """Return the shares (T,) of steps near a stop where `times` (T,), s, lie; clock: (T, S) s, times of stages."""
+    """Return the shares of T steps near a stop at which `times` lie, s; clock (T, S), s: times of their stages."""
     coefficients = clock @ MONOMIALS.T
     low, high = np.zeros(len(times)), np.ones(len(times))
     for _ in range(BISECTIONS):

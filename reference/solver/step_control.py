@@ -26,17 +26,17 @@ ERROR_ORDER = 7.0  # power of the step length with which the estimated error of 
 MIN_SCALE_FRACTION = 0.02
 # The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
 # before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
-FATAL_STEP = 1e-9  # share of RunSettings.period: a shorter step with an outcome such as the rim ends the run with it
+FATAL_STEP = 1e-9  # share of RunSettings.period; if a shorter step fails at the rim, say, that outcome ends the run
 MIN_STEP = 1e-16  # a step whose equations have no solution is shortened down to this length, in RunSettings.period
 # Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
 NEGLIGIBLE_TIME = 1e-11
-NEWTON_FRACTION = 0.01  # share of the tolerance: a smaller change of the accelerations ends Newton's method
+NEWTON_FRACTION = 0.01  # Newton's method ends if accelerations change by less than this share of the tolerance
 MAX_EXTRAPOLATION = 1.1  # largest ratio of a step to the last one at which the last polynomial gives its first guess
 
 
 @compiled
 def begin_from_state(system: System, work: Workspace, contact: int) -> None:
-    """Set all accelerations at the start of a contact phase; a slide from rest gets its own in `begin_sliding`."""
+    """Set all accelerations at the start of a contact phase; `begin_sliding` replaces them for a slide from rest."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     ax = ay = 0.0
@@ -65,7 +65,10 @@ def begin_with_acceleration(
 
 @compiled
 def count_step(work: Workspace, settings: RunSettings) -> bool:
-    """Count one more step; set accelerations to which its errors are related; return False past the limit of steps."""
+    """Count one more step, and return False if it is past the limit of steps.
+
+    Set work.scale, the accelerations to which the errors of the step are related.
+    """
     for i in range(work.x.shape[0]):
         work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * settings.unit)
     work.steps += 1.0
@@ -87,7 +90,10 @@ def remaining_time(system: System, work: Workspace, settings: RunSettings) -> fl
 
 @compiled
 def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return time, s, of the next kink of loading or temperature factor k_T (steps across lose order), or the end."""
+    """Return the time, s, of the next kink of the loading or of the temperature factor k_T, or the end of the run.
+
+    A step across a kink would lose its order of accuracy.
+    """
     after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
         k = next_knot(kinks, after)
@@ -98,13 +104,13 @@ def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
 
 @compiled
 def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Return the next step's length, s: as the last proposed, up to a kink of loading or temperature factor k_T."""
+    """Return the length, s, of the next step in time: work.length, or less to the end of the run or the next kink."""
     return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
 @compiled
 def guess_from_last_step(work: Workspace, h: float) -> None:
-    """Set the first guess of the platform's stage accelerations: extrapolate the last step, or keep the present one."""
+    """Set the first guess of the platform's stage accelerations: the last step's polynomial, or the present one."""
     old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
@@ -120,7 +126,7 @@ def guess_from_last_step(work: Workspace, h: float) -> None:
 
 @compiled
 def length_factor(error: float, tolerance: float) -> float:
-    """Return the ratio of next to present step length with which the error would just meet the tolerance, bounded."""
+    """Return the ratio, within bounds, of the length that would just meet the tolerance to the present length."""
     # The error falls like h^7, so the length that just meets the tolerance is the present one times
     # (tolerance / error)^(1/7) (Hairer and Wanner, IV.8). SAFETY_FACTOR makes the next step likely to pass, and the
     # bounds limit what a single estimate can change.
@@ -131,7 +137,7 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """Return the approximate duration, s, of a step of length h, near a stop in stretched time (dt = speed dtau)."""
+    """Return how long, s, a step of length h takes, about: near a stop, h is in stretched time (near_stop.py)."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
@@ -162,7 +168,10 @@ def adapt_length(work: Workspace, h: float, factor: float) -> None:
 
 @compiled
 def commit_step(system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int) -> None:
-    """Make the end of the step the new state; update peaks in the `parts` intervals of it given in work.edges."""
+    """Make the end of the step the new state, and update the peaks.
+
+    For the peaks only those parts of the step count, `parts` in number, whose starts and ends are in work.edges.
+    """
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False

@@ -54,7 +54,7 @@ RIM_SQUARED_FRACTION = 0.99
 
 @compiled
 def set_step_loads(system: System, work: Workspace, h: float) -> None:
-    """Set, at the stages, the ground's acceleration, and the drive on the platform by the ground and bodies above."""
+    """Set, at the stages of a step h, s, the ground's acceleration, and the drive on the platform: work.free."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
     set_harmonics(system, work, work.time)
     set_ground_at_stages(system, work)
@@ -78,11 +78,12 @@ def solve_rest_step(system: System, work: Workspace, h: float) -> None:
 @compiled
 def solve_moving_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
     """
-    Solve a step of a moving platform: its stage accelerations by Newton's method, bodies above eliminated exactly.
+    Solve a step of length h, s, of a moving platform, and return its outcome (system.py).
 
-    `set_step_loads` comes before; `a[0]` holds the first guess. The iteration ends when its change is below
+    `set_step_loads` comes before; work.a[0] holds the first guess. The iteration ends when its change is below
     `tolerance`, m/s^2, or at the level of rounding.
     """
+    # Newton's method finds the platform's stage accelerations; the bodies above are eliminated exactly (chain.py).
     # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
     # the last change, which is what `tolerance` bounds.
     # Across the direction of slip, friction's derivative by the velocity is (friction coefficient) N / v. If it is
@@ -123,7 +124,7 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
 
 @compiled
 def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, float]:
-    """Set the residual of the platform's equations at the stages; return outcome and largest acceleration, m/s^2."""
+    """Set the residual of the platform's equations at the stages; return an outcome, and their largest acceleration."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
     if row_maximum(load.px * load.px + load.py * load.py) >= system.radius**2:
@@ -155,7 +156,7 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
 
 @compiled
 def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
-    """Set the platform's stage position, velocity, driving acceleration (link minus ground) from its accelerations."""
+    """Set the platform's position, velocity and driving acceleration at the stages from its accelerations there."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
         velocity = position = broadcast_like(0.0, row(NODES_ROW, ()))
@@ -173,6 +174,8 @@ def set_platform_motion(work: Workspace, h: float, axes: int) -> None:
 @compiled
 def set_matrix(work: Workspace, h: float, axes: int) -> None:
     """Set Newton's matrix: derivatives of a - acceleration(a) = 0 by the platform's stage accelerations a."""
+    # A stage acceleration changes the position by h^2 A^2, the velocity by h A, and the drive by `feedback`; the slopes
+    # say how the acceleration answers to each of these.
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
     for axis in range(axes):
         for column in range(axes):
@@ -222,7 +225,7 @@ def set_absolute_accelerations(system: System, work: Workspace, contact: int) ->
 @compiled
 def step_error(system: System, work: Workspace, tolerance: float, weight: float) -> float:
     """
-    Return the largest relative error (over work.scale) of the bodies' absolute accelerations inside the step.
+    Return the largest error of the bodies' absolute accelerations inside the step, relative to work.scale.
 
     `weight` multiplies the error; `tolerance` is the relative error that the step may have.
     """

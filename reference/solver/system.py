@@ -1,4 +1,4 @@
-"""Data of compiled code, tuples of numbers and arrays: the scene, the settings of a run and the record of its steps."""
+"""Data of compiled code, as named tuples: the scene, the settings of a run and the record of its steps."""
 
 from __future__ import annotations
 
@@ -20,16 +20,20 @@ SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
 CONSISTENT, PRINTED = 0, 1
 # The integers below are NumPy's, since numba compiles a function anew for every literal integer it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
-# Integer codes of the states of the contact
+# Integer codes of the states of the contact: rest; sliding; creep, which is slower than v_reg under the regularized
+# law; sliding under the lubricated law; a slide near its stop, in stretched time (near_stop.py); friction that yields
+# (contact/yielding.py), below its limit or at it.
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING, ELASTIC, PLASTIC = cast(
     "tuple[int, ...]", tuple(map(np.int64, range(7)))
 )
-# Integer codes of outcomes: how the equations of one step were solved, or how a whole run ended
+# Integer codes of outcomes, of the equations of one step or of a whole run: solved; not solved; at the rim of the
+# surface (4.1); at Painleve's paradox, where no acceleration exists; contact opens; too many steps; end of the
+# isolator's travel.
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 
 class System(NamedTuple):
-    """Scene (bodies, isolator, loading) for compiled code; link stiffness and damping are over the mass they act on."""
+    """Scene (N bodies, isolator, loading) for compiled code; all forces are divided by the mass they act on."""
 
     small: bool  # True for the small-vibration equations (4.3), False for the exact ones (3.9)
     law: int  # friction law: SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
@@ -52,9 +56,12 @@ class System(NamedTuple):
     amplitudes: Array  # (3, 2), m/s^2, amplitudes of the two harmonics along x, y, z
     exponents: Complex  # (2,), 1/s, complex exponents -decay + i frequency of the two harmonics
     record: Array  # (K, 4), s and m/s^2, samples of a recorded motion, linear between them; (0, 4) without a record
-    # Temperature at first; its rise per friction power, times m1; displacement at which the slider uncovers the center
-    heat: Array  # (3,) fields of Heat: initial, degrees C; rise times m1, K s^2.5/m^2; cover, m; (0,) without heating
-    k_t: Array  # (K, 3 + S) pieces of friction's temperature factor k_T: start, length, s, coefficients; K = 0 unheated
+    # (3,) temperature at first, degrees C; its rise per friction power, times m1, K s^2.5/m^2; displacement, m, at
+    # which the slider uncovers the center of the concave surface. (0,) without heating
+    heat: Array
+    # (K, 3 + S) friction's temperature factor k_T in K pieces of time: start and length, s, then its coefficients in
+    # the elapsed share of the piece, lowest power first. K is 0 without heating
+    k_t: Array
     kinks: Array  # (J, 1) s, times from which k_T, the temperature factor of friction, changes like a root of time
     duration: float  # s, duration of the computed motion
     axes: int  # 1 for a motion in the plane of x and z, where y stays exactly zero; otherwise 2
@@ -72,7 +79,7 @@ class Ground(NamedTuple):
 
 
 class Load(NamedTuple):
-    """Position of the platform and all that acts on it, at one instant or at all stages of a step (equations.py)."""
+    """Position of the platform and what acts on it, at one instant (floats) or all stages of a step (rows, rows.py)."""
 
     px: Number  # m, position of the platform relative to the ground plate
     py: Number
@@ -85,7 +92,7 @@ class Load(NamedTuple):
 
 
 class StepRecord(NamedTuple):
-    """Up to T time steps of one motion, for `trajectory` (samples.py); T is 0 if only the peaks are wanted."""
+    """Up to T time steps of one motion of N bodies, with S stages each; T is 0 if only the peaks are wanted."""
 
     start: Array  # (T,) s, time at the start of each step
     length: Array  # (T,) s, length of each step; near a stop in stretched time tau (dt = speed dtau)
@@ -115,7 +122,7 @@ class RunSettings(NamedTuple):
 
 
 def pack_scene(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """Pack a scene (bodies, isolator, load) for compiled code; v_reg, m/s: regularized friction; None: set-valued."""
+    """Pack a scene for compiled code; dry friction is regularized below the speed v_reg, m/s, set-valued if None."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
         _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
@@ -168,11 +175,16 @@ def _pack_friction(scene: Scene, v_reg: float | None) -> dict[str, Any]:
 
 def dry_friction_of(system: System) -> DryFriction:
     """Return the dry friction law of a system at k_T = 1, that is without the effect of temperature."""
-    return DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
+    return DryFriction(
+        slow=system.friction, fast=system.friction + system.rise, rate=system.rate, exponent=system.exponent
+    )
 
 
 def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
-    """Divide link coefficients (N - 1, 2) by the mass of the body above, and below, each link: two arrays (N, 2)."""
+    """Return the coefficients of the link below each body, and of the link above it, over its mass: (N, 2) each.
+
+    links (N - 1, 2): stiffness or damping along x and y of the link between each body and the next.
+    """
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
     above[:-1] = links / masses[:-1, None]
@@ -180,7 +192,7 @@ def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
 
 
 def allocate_record(capacity: int, bodies: int) -> StepRecord:
-    """Return an empty record of time steps, with room for `capacity` steps of a number of bodies."""
+    """Return an empty record with room for `capacity` time steps."""
     t, n, s = capacity, bodies, STAGES
     return StepRecord(
         start=np.zeros(t),

@@ -17,7 +17,7 @@ BISECTIONS = 50  # number of bisections that find, up to rounding, when a displa
 
 @compiled
 def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -> float:
-    """Return the time, s, at which the displacement exceeds the isolator's travel in the step just solved, or inf."""
+    """Return the time, s, at which the platform passes the isolator's travel in the step just solved, or infinity."""
     if contact == REST or system.travel == inf:
         return inf
     for axis in range(2):
@@ -38,7 +38,7 @@ def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -
 
 @compiled
 def locate_displacement(work: Workspace, limit: float, place: float) -> float:
-    """Return the first step share up to `place` where the squared displacement exceeds `limit`, m^2, by work.powers."""
+    """Return the first share of the step, up to `place`, at which the squared displacement exceeds `limit`, m^2."""
     low, high = 0.0, place
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] >= place:

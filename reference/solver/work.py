@@ -18,20 +18,23 @@ from reference.solver.compiled.by_reference import ByReference, empty_structure,
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
-# Row numbers in Workspace.stage: position, velocity, driving acceleration (link minus ground): x row, then y row each;
-# reaction / platform mass, squared speed, inertia matrix determinant
+# Row numbers in Workspace.stage, the platform at the stages. Position, velocity and driving acceleration (link force
+# over mass minus ground acceleration) have two rows each, x and y; the number is that of the x row. The reaction over
+# the platform's mass, the squared speed and the inertia matrix determinant have one row each.
 POSITION, VELOCITY, DRIVE, REACTION, SQUARED_SPEED, DETERMINANT = 0, 2, 4, 6, 7, 8
-# First row numbers in Workspace.slopes: derivatives of (ax, ay) by position, velocity, driving acceleration; x, then y
+# Numbers of the first of four rows in Workspace.slopes: derivatives of ax and ay by the x component of position,
+# velocity or driving acceleration, then those of both by the y component
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# Row numbers in Workspace.turning, near a stop: slip direction, log speed, time, acceleration along and across slip,
-# their derivatives by direction, full / horizontal speed, speed, cosine and sine of direction, d ALONG / d log speed
+# Row numbers in Workspace.turning, a slide at the stages near a stop: direction, rad, logarithm of the horizontal
+# speed, time, s, acceleration along and across the direction, both derivatives of these by the direction, ratio of full
+# to horizontal speed, horizontal speed, m/s, cosine and sine of the direction, derivative of ALONG by the log speed
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
-# Row numbers in Workspace.shear, elastoplastic friction (contact/yielding.py), x row, then y row: position and velocity
-# (ARGUMENTS), driving acceleration (link, ground), friction force, acceleration (MOTION), rate of the force. The last
-# two have their derivatives in Workspace.shear_slopes. One row each: squared (force / friction limit) minus 1 (EXCESS),
-# the velocity along the force, m/s, and the friction limit.
+# Row numbers in Workspace.shear, the platform at the stages if friction yields (contact/yielding.py). Two rows each, x
+# and y: position, then velocity (ARGUMENTS), driving acceleration, friction force, acceleration (MOTION), rate of the
+# force. The last two have their derivatives in Workspace.shear_slopes. One row each: squared ratio of the force to the
+# friction limit, minus 1 (EXCESS), velocity along the force, m/s, and friction limit, m/s^2.
 ARGUMENTS, DRIVE_ARGUMENT, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, FRICTION_LIMIT = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # largest number of separate parts of one step in which accelerations count for the peaks
 SERIES_TERMS = 32  # largest number of terms in the Taylor series of the ground's harmonics over a step
@@ -53,7 +56,8 @@ class Workspace:
     """
     State and arrays of one run of N bodies: nothing is allocated during the run, nothing grows with its duration.
 
-    L is ROW_LENGTH, S is STAGES (collocation.py).
+    L is ROW_LENGTH and S is STAGES (collocation.py). An axis of length L is a row: one number for each stage of the
+    step, and an unused one (rows.py).
     """
 
     phase: Array  # (2,) rad, initial phases of the ground's two harmonics
@@ -80,10 +84,11 @@ class Workspace:
     x1: Array  # (N, 2) m, positions of the bodies at the end of the step
     v1: Array  # (N, 2) m/s, velocities of the bodies at the end of the step
     a: Array  # (N, 2, L) m/s^2, accelerations of the bodies at the stages
-    ground: Array  # (4, L) at the stages: ground acceleration, m/s^2, and k_T, the temperature factor of friction
+    ground: Array  # (4, L) at the stages: ground acceleration along x, y, z, m/s^2, and friction's temperature factor
     total: Array  # (N, 3, L) m/s^2, absolute accelerations of the bodies at the stages
     free: Array  # (2, L) m/s^2, driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, L) change of link force on the platform / m1 at all stages per its acceleration at each
+    # (2, S, L) by axis: link force on the platform over its mass, at all stages L, per its acceleration at stage S
+    feedback: Array
     inverse: Complex  # (N, 2, CHANNELS) inverse pivots of the eliminated bodies above the platform (chain.py)
     load: Complex  # (N, 2, CHANNELS) right sides of the equations of the bodies above the platform (chain.py)
     channels: Array  # (L,) stage values in the collocation matrix's eigenbasis (channels): real, then imaginary parts
@@ -98,14 +103,15 @@ class Workspace:
     velocities: Array  # (N, 2, L) m/s, velocities of the bodies at the stages of a step near a stop
     turning: Array  # (12, L) slip direction, speed, time at the stages near a stop, in rows DIRECTION and following
     levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
-    edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
+    edges: Array  # (2 MAX_PARTS,) start and end, in turn, of the parts of the step that count for the peaks, in theta
     powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
     dense: Array  # (2, L) squared accelerations, or displacements, at the points peaks.SEARCH_ROWS of the step
     scale: Array  # (N,) m/s^2, accelerations to which the errors of the bodies are related
     defect: Array  # (N,) m/s^2, error of each body's acceleration extrapolated from the stages to the step's start
     force: Array  # (2,) m/s^2, friction force over m1 at the start of the step, if friction yields
     shear: Array  # (15, L) motion and friction at the stages if friction yields, in rows ARGUMENTS to FRICTION_LIMIT
-    shear_slopes: Array  # (9, 4, L) derivatives of acceleration, friction rate by 8 rows from ARGUMENTS; last: values
+    # (9, 4, L) derivatives of the four rows from MOTION on by each of the eight from ARGUMENTS on; last, their values
+    shear_slopes: Array
     shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method if friction yields
     shear_right: Array  # (4 S,) right side of Newton's equations if friction yields, then their solution
     shear_pivots: Array  # (4 S,) row exchanges in the LU factors of shear_matrix
@@ -129,7 +135,7 @@ class Workspace:
 
 
 def _allocate_fields(work: Workspace, bodies: int) -> None:
-    """Set every field of a workspace for N = `bodies` to zeros or zero, but the temperature factor k_T to 1."""
+    """Set every field of a workspace for N = `bodies` to zeros or zero, and the temperature factor k_T to 1."""
     n, s, c, length = bodies, STAGES, CHANNELS, ROW_LENGTH
     work.phase = np.zeros(2)
     work.x = np.zeros((n, 2))
@@ -203,7 +209,7 @@ def allocate_workspace(bodies: int) -> Workspace:
 
 @compiled
 def reset_workspace(work: Workspace, length: float, end: float) -> None:
-    """Reset a workspace for a new run, except x and v; length: first step, s; end: end of the run, s."""
+    """Reset a workspace, except x and v, for a run that ends at `end`, s, and has a first step of `length`, s."""
     work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
     work.length, work.stretched_length, work.max_growth, work.last_length = length, 0.0, 0.0, 0.0
     work.end, work.last_peak, work.last_large = end, 0.0, 0.0

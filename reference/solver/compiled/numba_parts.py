@@ -20,8 +20,9 @@ from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalizati
 from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
-# Compiler passes of numba that change nothing in a part (function for compiled callers only): it has no whole-array
-# expressions, inner functions, branches on None, functions inlined before types are known, or variable ends to mark.
+# Compiler passes of numba that change nothing in a part (a function that only compiled code calls). A part has no
+# expressions of whole arrays, inner functions, branches on None, or functions to inline before types are known, and
+# needs no marks where a variable ends.
 UNNEEDED_PASSES = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
 PYTHON_OPERATORS = {each for each in vars(operator).values() if callable(each)}  # Python's operators as functions
 
@@ -40,7 +41,8 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
     _whole: Any = None
 
     def finalize(self) -> None:
-        """Finish a function for compiled callers; they, not this, link and optimize it and make it machine code."""
+        """Finish a part (a function that only compiled code calls) without the linking and optimization of numba, which
+        its callers do. The linkage makes the linker keep one copy where several callers bring the same part along."""
         self._raise_if_finalized()
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.external:
@@ -48,7 +50,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """Return code of this part (function for compiled callers only) and all it calls, each once, to be linked."""
+        """Return the code of this part and of all parts that it calls, each of them once, for linking into a caller."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
@@ -70,7 +72,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _LowerAsPart(LoweringPass):  # type: ignore[misc]
-    """Compiler pass: numba puts code in a `_PartLibrary`, to link into a caller, without counting array references."""
+    """Compiler pass that puts code in a `_PartLibrary`, to be linked into a caller; it counts no array references."""
 
     _name = "as_part"
 
@@ -79,7 +81,7 @@ class _LowerAsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        """Put code in a `_PartLibrary`, to link into a caller, no reference counts; return False: nothing rewritten."""
+        """Generate code into a `_PartLibrary`, without reference counts; return False: numba's program is unchanged."""
         context = state.targetctx  # numba makes one for every function, so that it may be changed here
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # code that reads fields of structures still needs this object
@@ -116,7 +118,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
         return super().compile_extra(func)
 
     def define_pipelines(self) -> list[Any]:
-        """Return the passes, in order, by which numba compiles a part: a function that only compiled code calls."""
+        """Return the list of pass managers that numba expects: one, with the passes that compile a part, in order."""
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.passes = [each for each in passes.passes if each[0] not in UNNEEDED_PASSES]
         passes.add_pass_after(_LowerAsPart, AnnotateTypes)

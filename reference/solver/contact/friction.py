@@ -7,10 +7,10 @@ friction coefficient. Each gives a slip vector s = factor * v_h with v_h the hor
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
 The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest
-takes `static_coefficient` and the directions at a stop `kinetic_coefficient`, both mu(0). Where it depends on the
-normal force or on heating as well, this is its value under the weight, and `acceleration` (platform.py) multiplies the
-slip vector (load.py). In the solver only this file reads the law of a system (reference/problem/friction.py), and
-yielding.py the stiffness of friction that yields.
+takes `static_coefficient` and the directions at a stop `kinetic_coefficient`, both mu(0). Where the coefficient depends
+on the normal force or on heating as well, these are the cold values under the weight, and
+`solve_platform_acceleration` (platform.py) corrects the slip vector by load.py. In the solver only this file reads the
+law of a system (reference/problem/friction.py), and yielding.py the stiffness of friction that yields.
 """
 
 from __future__ import annotations
@@ -45,7 +45,10 @@ def viscous_factor(system: System) -> float:
 
 @compiled
 def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
-    """Return the static friction limit at normal force `reaction`, both over m1, m/s^2, at temperature factor k_t."""
+    """Return the largest friction force at rest under a normal force `reaction`, both over the platform's mass, m/s^2.
+
+    k_t is the factor by which temperature changes the friction coefficient.
+    """
     return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
@@ -59,13 +62,13 @@ def coefficient(system: System, speed: Number) -> Number:
 
 @compiled
 def coefficient_slope(system: System, speed: Number) -> Number:
-    """Return the derivative of the friction coefficient with respect to the sliding speed, s/m."""
+    """Return the derivative of the dry friction coefficient by the sliding speed, s/m, at a speed in m/s."""
     return system.rise * system.rate * exp(-system.rate * speed)
 
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Return the rate, 1/s, at which a change of speed decays because friction grows with speed; 0 if it does not."""
+    """Return the rate, 1/s, at which friction that grows with speed makes a small change of speed decay; else 0."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
@@ -82,7 +85,7 @@ def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy
 @compiled
 def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (squared tangential force minus squared static friction limit, reaction) at rest, by the exact equations.
+    Return squared tangential force minus squared friction limit, m^2/s^4, and reaction over m1, by the exact equations.
 
     The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
     at most the friction coefficient mu times its normal part N > 0: while |T|^2 - (mu N)^2 is not positive.
@@ -102,10 +105,12 @@ def squared_rest_excess_exact(system: System, load: Load) -> tuple[Number, Numbe
 @compiled
 def squared_rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Return (squared tangential force - squared static friction limit, reaction) at rest, by small-vibration equations.
+    Return the values of `squared_rest_excess_exact`, by the equations for small vibration (4.3).
 
-    With the friction coefficient mu, Mf = mu (R I - u p^T / rho), R = M (g + zeta''), F_3 = f - R p / rho and
-    Mf^-1 = adj / det, the first is |adj F_3|^2 - det^2, so that nothing is divided by a small number.
+    F_3 = f - R p / rho is the tangential force to be held, and Mf e, with Mf = mu (R I - u p^T / rho), the largest
+    friction against a slip direction e, |e| = 1. Here R = M (g + zeta'') is the reaction, f the driving acceleration, u
+    the ground's and p the position. Rest is possible while |Mf^-1 F_3| <= 1. With Mf^-1 = adj / det the excess is
+    |adj F_3|^2 - det^2, so that nothing is divided by a small number.
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
@@ -155,9 +160,9 @@ def slip_vector(
     system: System, px: Number, py: Number, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number]:
     """
-    Return slip vector (friction over normal force) of a slide along (ex, ey), and ratio of full to horizontal speed.
+    Return the slip vector (horizontal friction over normal force) along x and y of a slide in the direction (ex, ey).
 
-    `speed` is the horizontal one, m/s.
+    `speed` is its horizontal speed, m/s. The third value is the ratio of its full to its horizontal speed.
     """
     ratio = sqrt(squared_sliding_speed(system, px, py, ex, ey))
     friction = coefficient(system, speed * ratio) / ratio

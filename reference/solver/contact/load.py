@@ -2,9 +2,10 @@
 Dry friction that depends on load and heat: coefficient mu k_T (N / W)^n under a normal force N.
 
 W is the weight, mu the cold coefficient under it, k_T(t) the temperature factor (heating.py), 1 without heating. The
-slip vector s of equations.py is multiplied by phi(R) = k_T (R / (M g))^n, R = N / m1. In the exact equations R depends
-on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the normal. Without such friction
-nothing of this is compiled (variants.py).
+slip vector s of equations.py is multiplied by phi(R) = k_T (R / (M g))^n, where R = N / m1 and M is the mass ratio. In
+the exact equations R depends on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, with n_h the
+horizontal part of the normal and q the drive along the normal. Without such friction nothing of this is compiled
+(variants.py).
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def _keep_slip(system: System, reaction: Number, slip: Number) -> Number:
 
 @compiled
 def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number:
-    """Return a slip vector component times (relative change of friction force / relative change of reaction)."""
+    """Return a slip vector component times the relative change of friction force per relative change of reaction."""
     return slip * (1.0 + elasticity(system, reaction))
 
 
@@ -52,9 +53,9 @@ def _scale_by_response(system: System, reaction: Number, slip: Number) -> Number
 scale_by_load = choose_variant("exponent", _keep_coefficient, _coefficient_at_load_and_temperature)
 """Return a number proportional to the cold friction coefficient under the weight, corrected for k_T and reaction."""
 
-# Multiplies slip by (relative change of friction force / that of the reaction), for derivatives of the acceleration
+# For derivatives of the acceleration, where friction varies with the load; else a slip vector component as it is
 scale_by_response = choose_variant("exponent", _keep_slip, _scale_by_response)
-"""Return a slip vector component times (relative change of friction force / relative change of reaction)."""
+"""Return a slip vector component times the relative change of friction force per relative change of reaction."""
 
 
 @compiled
@@ -74,7 +75,7 @@ def elasticity(system: System, reaction: Number) -> Number:
 def _acceleration_of_given_slip(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector independent of the reaction."""
+    """Return ax, ay, reaction over platform mass and inertia determinant for a slip vector independent of the load."""
     pressure = system.gravity + load.uz
     return exact_acceleration(
         load.px, load.py, load.fx, load.fy, pressure, squared_speed, sx, sy, system.mass_ratio, system.radius
@@ -85,11 +86,12 @@ def _acceleration_of_given_slip(
 def _acceleration_of_load(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, inertia matrix determinant) by Newton's method, if friction varies with load."""
-    # A friction coefficient that falls with the load (n < 0) makes the equation for R nonlinear. The derivative of this
-    # equation takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's
-    # paradox). If the iteration ends far from a solution, no acceleration exists either: the determinant is set to -1,
-    # which the callers read as the paradox.
+    """Return ax, ay, reaction over platform mass and inertia determinant if friction varies with the load or heat."""
+    # A friction coefficient that falls with the load (n < 0) makes the equation for the reaction R, at the top of this
+    # file, nonlinear: R (`plain` - phi(R) `taken`) = `drive`, with phi(R) = `factor`. The derivative of this equation
+    # takes the place of the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the
+    # iteration ends far from a solution, no acceleration exists either: the determinant is set to -1, which the callers
+    # read as the paradox.
     curvature = 1.0 / system.radius
     nx, ny = -load.px * curvature, -load.py * curvature
     tilt = nx * nx + ny * ny

@@ -26,23 +26,25 @@ ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """Return the platform's position and driving acceleration (link minus ground), and the ground's, at step start."""
+    """Return the position of the platform and what acts on it (`Load`) in the state work.x, work.v."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
         fy += system.above[0, 1] * (work.x[1, 1] - work.x[0, 1])
         fx += system.damping_above[0, 0] * (work.v[1, 0] - work.v[0, 0])
         fy += system.damping_above[0, 1] * (work.v[1, 1] - work.v[0, 1])
-    return Load(work.x[0, 0], work.x[0, 1], fx, fy, ground.x, ground.y, ground.z, ground.k_t)
+    return Load(
+        px=work.x[0, 0], py=work.x[0, 1], fx=fx, fy=fy, ux=ground.x, uy=ground.y, uz=ground.z, k_t=ground.k_t
+    )  # fmt: skip
 
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """Return the platform's position and driving acceleration (link minus ground), and the ground's, at the stages."""
+    """Return the position of the platform and what acts on it (`Load`) at all stages of the step, as rows (rows.py)."""
     stage, ground = work.stage, work.ground
     return Load(
-        row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
-        row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3),
+        px=row(stage, POSITION), py=row(stage, POSITION + 1), fx=row(stage, DRIVE), fy=row(stage, DRIVE + 1),
+        ux=row(ground, 0), uy=row(ground, 1), uz=row(ground, 2), k_t=row(ground, 3),
     )  # fmt: skip
 
 
@@ -61,7 +63,10 @@ def slip_factor(system: System, contact: int, squared_speed: Number) -> Number:
 def solve_platform_acceleration(
     system: System, load: Load, squared_speed: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return platform (ax, ay, reaction / m1, inertia matrix determinant) for a slip vector sx, sy (equations.py)."""
+    """Return ax, ay, reaction over platform mass and inertia matrix determinant (equations.py) for a slip vector.
+
+    The slip vector is given for friction that depends on neither load nor temperature.
+    """
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
@@ -77,7 +82,7 @@ def solve_platform_acceleration(
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """Return platform (ax, ay, reaction / m1, inertia matrix determinant, squared speed) at a nonzero velocity."""
+    """Return ax, ay, reaction over mass, inertia matrix determinant and squared sliding speed of a moving platform."""
     squared_speed = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, squared_speed)
     ax, ay, reaction, determinant = solve_platform_acceleration(system, load, squared_speed, factor * vx, factor * vy)
@@ -88,7 +93,10 @@ def moving_acceleration(
 def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """Return (ax, ay, reaction / m1, ratio of full to horizontal speed) of a slide along (ex, ey), speed 0 included."""
+    """Return ax, ay, reaction over platform mass, and ratio of full to horizontal speed, of a slide along (ex, ey).
+
+    `speed` is the horizontal one, m/s. It may be 0: then these are the limits at a stop.
+    """
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = solve_platform_acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
@@ -96,7 +104,10 @@ def acceleration_along(
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """Return (squared tangential force minus squared friction limit, reaction / m1); rest needs the first <= 0."""
+    """Return squared tangential force minus squared friction limit at rest, m^2/s^4, and reaction, both per mass m1.
+
+    Rest is possible while the first is not positive and the second is positive.
+    """
     if system.small:
         excess, reaction = squared_rest_excess_small(system, load)
     else:

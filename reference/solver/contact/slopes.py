@@ -27,10 +27,10 @@ from reference.solver.work import (
 @compiled
 def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Set stage derivatives of the platform's acceleration by position, velocity, driving acceleration (link, ground).
+    Set the derivatives of the platform's acceleration by its position, velocity and driving acceleration at the stages.
 
-    `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
-    BY_DRIVE on (ax, ay) by x, then by y.
+    They go to work.slopes: four rows from each of BY_POSITION, BY_VELOCITY and BY_DRIVE on, the derivatives of ax and
+    ay by the x component, then those by the y component. work.stage holds reaction, determinant and squared speed.
     """
     squared_speed = row(work.stage, SQUARED_SPEED)
     factor = slip_factor(system, contact, squared_speed)
@@ -45,7 +45,7 @@ def set_slopes(system: System, contact: int, work: Workspace) -> None:
 
 @compiled
 def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) -> Row:
-    """Return the derivative of friction / (normal force * velocity) by the squared sliding speed, s^3/m^3."""
+    """Return the derivative of the slip vector per velocity, `factor`, by the squared sliding speed, s^3/m^3."""
     bend = -0.5 * factor / squared_speed if contact == SLIDING else broadcast_like(0.0, squared_speed)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
         speed = sqrt(squared_speed)
@@ -56,14 +56,17 @@ def factor_slope(system: System, contact: int, factor: Row, squared_speed: Row) 
 
 @compiled
 def write_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
-    """Write two derivatives, of the accelerations ax and ay, into the rows `place` and `place` + 1 of `slopes`."""
+    """Write a derivative of ax, given as x, into row `place` of `slopes`, and that of ay, given as y, into the next."""
     put(slopes, place, x)
     put(slopes, place + 1, y)
 
 
 @compiled
 def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Set the derivatives of the platform's acceleration by the small-vibration equations (4.3)."""
+    """Set the derivatives of the platform's acceleration (rows: `set_slopes`) by the small equations (4.3)."""
+    # By (4.3) the acceleration is a = f - R (p / rho + s) + u (p . s) / rho, with R the reaction over m1, u the
+    # ground's acceleration and s = factor v the slip vector, which changes as s' = factor v' + bend (v^2)' v. `lever`
+    # is the change of (p . s) / rho, and `gain` is bend (v^2)'.
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)
@@ -83,22 +86,23 @@ def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
 
 @compiled
 def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Set the derivatives of the platform's acceleration by the exact equations (3.9)-(3.13)."""
-    # The acceleration is a = f + R (n - s), f: drive, R = M (v^2 / rho - n . f + n_z q) / D: reaction / m1, n: normal,
-    # s: slip vector, q: pressure, M: mass ratio, D = 1 + (M - 1) (n^2 - n . s) (equations.py). Every derivative is
-    # f' + R' (n - t) + R (n' - s'),  t: s times (relative change of friction force / relative change of R), with
-    #     R' = (M / D) (v^2 / rho - n . f + n_z q)' - R (M - 1) / D (n^2 - n . s)',  `share` and `turn` below.
-    # The slip vector changes as s' = factor v' + bend (v^2)' v.
+    """Set the derivatives of the platform's acceleration (rows: `set_slopes`) by the exact equations (3.9)-(3.13)."""
+    # By equations.py the acceleration is a = f + R (n - s), with f the drive, n the normal, s the slip vector and
+    # R = M (v^2 / rho - n . f + n_z q) / D the reaction over m1; q is the pressure, M the mass ratio and
+    # D = 1 + (M - 1) (n^2 - n . s). So every derivative is a' = f' + R' (n - t) + R (n' - s'), where t is s times the
+    # relative change of the friction force per relative change of R (load.py), and
+    #     R' = (M / D) (v^2 / rho - n . f + n_z q)' - R (M - 1) / D (n^2 - n . s)'.
+    # Below, `share` is M / D, `turn` is R (M - 1) / D, and the slip vector changes as s' = factor v' + bend (v^2)' v.
     stage, out, radius, ratio = work.stage, work.slopes, system.radius, system.mass_ratio
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, determinant = row(stage, REACTION), row(stage, DETERMINANT)
     sx, sy, nx, ny = factor * vx, factor * vy, -px / radius, -py / radius
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
-    rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
-    lean = nx * vx + ny * vy
+    rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)  # q / n_z: (n_z q)' = -n . n' q / n_z
+    lean = nx * vx + ny * vy  # n . v: (n . s)' = n' . s + factor n . v' + bend (v^2)' n . v
     share = ratio / determinant  # change of the reaction per change of the load along the normal
     turn = reaction * (ratio - 1.0) / determinant
-    dn = -1.0 / radius
+    dn = -1.0 / radius  # derivative of n by position
     tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)
     for axis in range(system.axes):
         ex, ey = (1.0, 0.0) if axis == 0 else (0.0, 1.0)

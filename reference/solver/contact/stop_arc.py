@@ -37,7 +37,10 @@ def turning_acceleration(system: System, load: Load, angle: float) -> float:
 
 @compiled
 def squared_absolute_acceleration(system: System, load: Load, angle: float, horizontal: float) -> float:
-    """Return the platform's squared absolute acceleration at speed 0, m^2/s^4; its vertical part if horizontal is 0."""
+    """Return the platform's squared absolute acceleration, m^2/s^4, as its speed goes to 0 in the direction `angle`.
+
+    The angle is in rad; `horizontal` is 1, or 0 for the vertical part alone.
+    """
     ax, ay, _, _ = acceleration_along(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
@@ -47,7 +50,10 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """Return direction, rad, a slide turns to from `angle` at stop; no turn if sideways / driving force <= no_turn."""
+    """Return the direction, rad, into which a slide turns from `angle` while its speed goes to zero.
+
+    Where the ratio of the sideways to the driving force is at most `no_turn`, it keeps its direction.
+    """
     # The direction turns one way until its turning vanishes: at the first zero of the sideways acceleration that way.
     # This zero may be close by, or there may be several zeros: the search goes in strides that double from FIRST_STRIDE
     # up to the distance of two samples, and ends at the first change of sign, or after a full turn.
@@ -80,7 +86,9 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """Return the angle, rad, between two others, where slides do not turn: regula falsi (Dowell and Jarratt 1971)."""
+    """Return the angle, rad, between two others, at which a slide does not turn any further."""
+    # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
+    # halved. `inside` and `outside` are angles at which the slide turns in opposite senses.
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)
@@ -107,7 +115,7 @@ def arc_peak(system: System, load: Load, angle: float, end: float, floor: float,
     """
     Return the largest `squared_absolute_acceleration` over the directions from `angle` to `end`, m^2/s^4.
 
-    If the maximum is sure to lie below `floor`, the largest sample is returned.
+    If the maximum is sure to lie below `floor`, m^2/s^4, the largest sample is returned instead.
     """
     # The squared absolute acceleration is smooth in the angle: sampling finds the highest local maximum, and
     # golden-section search between the neighbors of the best sample refines it. If this maximum cannot

@@ -1,13 +1,12 @@
 """
 Friction that yields elastically before it slides: its force, and the rate of its change.
 
-The friction force is k times an elastic displacement e in the tangent plane, bounded by mu N. Here q = k e / m1, m/s^2,
-by its horizontal part, and kappa = k / m1.
+The friction force is a stiffness k times an elastic displacement e in the tangent plane, and is bounded by mu N. Here
+it is q = k e / m1, m/s^2, stored by its horizontal part; kappa = k / m1, R = N / m1, v is the platform's velocity.
   elastic  q' = kappa v + transport            while |q| < mu R
   plastic  |q| = mu R, and e' = v - lambda q / |q| with lambda >= 0: slip along the force turns q by the part of the
-           velocity across it. q is kept up to its size.
-Transport along the sphere, n (v . q) / rho, keeps q in the tangent plane. v is the velocity of the platform, also
-in mu.
+           velocity across it. The steps compute the direction of q alone, since its size is mu R.
+Transport along the sphere, n (v . q) / rho, keeps q in the tangent plane. The speed in mu is that of the platform, too.
 The friction limit mu R, its dependence on speed and load, and the equations of motion are those of sliding friction.
 """
 
@@ -27,7 +26,7 @@ from reference.solver.system import ELASTIC, Load, System
 def elastic_acceleration(
     system: System, load: Load, squared_speed: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number]:
-    """Return (ax, ay, reaction / m1) for a friction force over m1, (qx, qy), m/s^2, by (T3) of docs/theory.md."""
+    """Return ax, ay and reaction under friction (qx, qy), both over the platform's mass, by (T13) of docs/theory.md."""
     px, py = load.px, load.py
     pressure = system.gravity + load.uz
     if system.small:
@@ -48,10 +47,10 @@ def yielding_motion(
     system: System, contact: int, load: Load, vx: Number, vy: Number, qx: Number, qy: Number
 ) -> tuple[Number, Number, Number, Number, Number, Number, Number, Number, Number]:
     """
-    Return nine values: acceleration, reaction, rate of friction force q, elastic (below its limit) or plastic (at it).
+    Return the platform's motion under a friction force over m1, (qx, qy), m/s^2; contact: ELASTIC or PLASTIC.
 
-    In order: ax, ay, reaction / m1, inertia determinant, the rates of q along x and y, the limit of |q|, |q| itself
-    (both m/s^2, of full vectors in the tangent plane), and the velocity along q, m/s.
+    The nine values are: ax, ay, reaction / m1, inertia matrix determinant, the rates of q along x and y, m/s^3, the
+    limit of |q|, |q| itself (both m/s^2, of full vectors in the tangent plane), and the velocity along q, m/s.
     """
     nx = ny = qz = vz = broadcast_like(0.0, qx)
     nz = broadcast_like(1.0, qx)

@@ -1,4 +1,4 @@
-"""Steps of one contact phase (rest, sliding, ...): each is proposed, solved, checked, cut at an event, committed."""
+"""The loop over the steps of a contact phase: a step is proposed, solved, checked, cut at an event and committed."""
 
 from __future__ import annotations
 
@@ -68,10 +68,11 @@ from reference.solver.work import REACTION, SQUARED_SPEED, Workspace
 # Rounding error of the platform's acceleration, a difference of forces over m1, as a share of the friction limit
 FRICTION_ROUNDING = 1e-14
 MAX_VIBRATION_ANGLE = 5.0  # rad, phase angle of the upper bodies' fastest vibration per step; larger steps damp it
-# A step in which a free vibration turns by `angle`, rad, adds DRIFT_SHARE * angle^7 * d to its error, d: interpolation
-# error at the step's start. The sum counts up to the vibration's size, d / (2 DRIFT_SHARE angle^7) (decisions/0002).
+# Drift is the error that steps leave in a free vibration. A step in which its phase moves by `angle`, rad, adds
+# DRIFT_SHARE * angle^7 * d, with d the interpolation error at the start of the step. The sum counts up to the size of
+# the vibration, d / (2 DRIFT_SHARE angle^7): docs/decisions/0002-two-run-error.md.
 DRIFT_SHARE = 6e-8
-# Turn of the fastest vibration, rad, up to which a step's error in it is left out: 100 such add < 1e-3 of a tolerance
+# Steps in which the fastest vibration moves by less, rad, add no drift: 100 would add < 1e-3 of a tolerance
 MIN_DRIFT_ANGLE = 2.0
 # Factor on the tolerance of Newton's method for a slide whose friction depends on the speed
 VARYING_NEWTON_FRACTION = 1e-3
@@ -81,7 +82,7 @@ VARYING_NEWTON_FRACTION = 1e-3
 def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
-    """Follow the motion until the contact's state changes or the run ends; return outcome and next contact state."""
+    """Follow the motion until the contact changes or the run ends; return the outcome and the next contact state."""
     # A step goes through five checks. (1) The phase proposes its length; a slide about to stop proposes none and hands
     # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
     # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
@@ -133,7 +134,10 @@ def follow_phase(
 def shorten_failed_step(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, code: int
 ) -> tuple[int, int]:
-    """Shorten the next step after one that failed; return SOLVED or the reason to give up, and next contact state."""
+    """Shorten the next step after one of length h that failed with `code`.
+
+    Return SOLVED or the reason to give up, and the next contact state.
+    """
     following = contact
     if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
         return code, contact
@@ -150,7 +154,10 @@ def shorten_failed_step(
 def commit_within_travel(
     system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int, angle: float
 ) -> int:
-    """Make a step's end the new state; return TRAVEL (at work.time) if the isolator's travel ends in it, or SOLVED."""
+    """Make the end of a step the new state, and return SOLVED, or TRAVEL if the isolator's travel is passed in it.
+
+    work.time is then the time of passing. parts: of `mark_counted_parts`; angle: of `vibration_angle`.
+    """
     reached = instant_of_travel(system, work, contact, h)
     if angle > MIN_DRIFT_ANGLE:
         add_drift(system, work, h, angle)
@@ -163,13 +170,13 @@ def commit_within_travel(
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """Return the phase angle, rad, of the upper bodies' fastest vibration in a step; 0 near a stop: steps are short."""
+    """Return how far, rad, the fastest vibration's phase moves in a step h; 0 near a stop, where steps are short."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
 @compiled
 def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
-    """Add to work.drift, m/s^2, a step's error in the fastest vibration; bound it by the vibration's own size."""
+    """Add a step's error in the fastest vibration to work.drift, m/s^2, up to the size of the vibration itself."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
@@ -194,7 +201,10 @@ def begin_contact_phase(system: System, work: Workspace, contact: int, settings:
 
 @compiled
 def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Return the next step's length, s, or stretched (dt = speed dtau) near a stop; 0 if stretched time is to begin."""
+    """Return the length of the next step, s, or near a stop in stretched time (near_stop.py).
+
+    It is 0 if a slide is to go on in stretched time.
+    """
     if contact == SLIDING:
         return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
@@ -238,7 +248,10 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 def limit_step_to_event(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float
 ) -> tuple[float, int]:
-    """Return the step's length up to its first event (0: at its start), and the contact state from there on."""
+    """Return the length of a step h up to its first event, 0 if that is at its start, and the contact from there on.
+
+    Events are changes of contact, and near a stop also kinks of the loading.
+    """
     if contact == REST:
         return shorten_step_to_onset(system, work, h)
     if contact == SLIDING:
@@ -253,7 +266,7 @@ def mark_counted_parts(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, since: float
 ) -> int:
     """
-    Set work.edges to start and end (theta) of each part of the step that counts for the peaks; return their number.
+    Set work.edges to start and end, in theta, of each part of a step that counts for the peaks; return their number.
 
     Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
@@ -282,7 +295,10 @@ def mark_counted_parts(
 def prepare_next_step(
     system: System, work: Workspace, contact: int, following: int, settings: RunSettings, h: float, factor: float
 ) -> int:
-    """Set the length of the next step after one that was accepted; return the next state of the contact."""
+    """Set the length of the next step after one of length h that was accepted; return the next contact state.
+
+    `following` is the state that the events of the step lead to; factor: of `length_factor`.
+    """
     if contact == STOPPING:
         after = commit_stopping_step(system, work, settings, h, factor)
         return following if following == CREEPING else after

@@ -33,7 +33,10 @@ def begin_rest(system: System, work: Workspace) -> float:
 
 @compiled
 def shorten_step_to_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Solve a step of rest again up to just past an onset of sliding in it; return its length and the next contact."""
+    """Return the length of a solved step of rest, h, s, up to an onset of sliding in it, and the next contact state.
+
+    If there is an onset, the step is solved again, to end just behind it.
+    """
     # The slide that follows begins in the direction that its own acceleration does not turn; this direction depends on
     # the excess over the friction limit. At the limit itself that direction is undefined, so the onset is located
     # between MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their

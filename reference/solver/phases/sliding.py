@@ -50,15 +50,15 @@ MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest ratio of the next step to the present one if the present one had to be shortened
 # A slide goes on in stretched time (dt = speed dtau), which resolves its turn, if it would stop in STOP_WITHIN_STEPS
 # steps or STOP_WITHIN_TIME periods, and until then the upper bodies' fastest vibration turns at most MAX_CHAIN_ANGLE.
-STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them goes on in stretched time (dt = speed dtau)
-STOP_WITHIN_TIME = 0.05  # periods: a slide that would stop within them goes on in stretched time (dt = speed dtau)
-MAX_CHAIN_ANGLE = 0.5  # rad: if the upper bodies' fastest vibration turns further up to a stop, time is not stretched
+STOP_WITHIN_STEPS = 1.5  # a slide that would stop within so many steps goes on in stretched time (dt = speed dtau)
+STOP_WITHIN_TIME = 0.05  # a slide that would stop within so many periods goes on in stretched time (dt = speed dtau)
+MAX_CHAIN_ANGLE = 0.5  # rad; time is not stretched if the upper bodies' fastest vibration moves further until the stop
 # Longest step as share of the time to the stop: a longer one would end where the slip direction turns fast
 MAX_WAY_TO_STOP = 0.55
 # Smallest cosine of the angle between velocities at two successive stages: below it the step is not smooth, and fails
 MIN_TURN_COSINE = 0.3
 LEVEL_TOLERANCE = 1e-9  # relative distance of squared speed from v_reg^2, creep's limit, at which a slide becomes creep
-NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2: below this squared speed at a stage, onset of creep (v_reg) is sought
+NEAR_LEVEL_FACTOR = 1.25  # creep is looked for if the squared speed at a stage is below this multiple of v_reg^2
 # A slide slower than this share of (friction deceleration * step length) aligns with the force within the step
 STIFF_SPEED_FRACTION = 0.03
 # Share of the driving acceleration (link, ground) to which a slide's smaller first guess is raised, for a direction
@@ -68,8 +68,8 @@ BARELY_SLIPPING_EXCESS = 1e-4
 # A slide from rest that cannot begin with a step of NEGLIGIBLE_STEP periods, or NEGLIGIBLE_RESPONSE times the time in
 # which friction responds to speed, moves nothing: rest replaces it for NEGLIGIBLE_HOLD periods. A slide that slows to
 # v_reg, where creep begins, within the share NEGLIGIBLE_STEP of a step creeps from the start of this step.
-NEGLIGIBLE_STEP = 1e-6  # periods: rest replaces a slide that fails in a shorter step; also the share of a step, above
-NEGLIGIBLE_RESPONSE = 1e-3  # times friction's response time: rest replaces a slide that fails in a shorter step
+NEGLIGIBLE_STEP = 1e-6  # rest replaces a slide that fails in a step of fewer periods; also the share of a step, above
+NEGLIGIBLE_RESPONSE = 1e-3  # rest replaces a slide that fails in a step below this share of friction's response time
 NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # periods of rest that replace a slide which moves nothing
 MAX_LENGTH_RATIO = 3.0  # a step shorter than 1 / MAX_LENGTH_RATIO of the last one takes no first guess from that
 
@@ -167,7 +167,8 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     free, ground, angle = work.free, work.ground, work.angle
     for k in range(STAGES):
         load = Load(
-            work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k], ground[3, k]
+            px=work.x[0, 0], py=work.x[0, 1], fx=free[0, k], fy=free[1, k],
+            ux=ground[0, k], uy=ground[1, k], uz=ground[2, k], k_t=ground[3, k],
         )  # fmt: skip
         angle = direction_at_stop(system, load, angle, 0.0)
         work.a[0, 0, k], work.a[0, 1, k] = slip_direction_cosines(angle, system.axes)
@@ -176,7 +177,7 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> None:
-    """Set a slow slide's stage accelerations along directions (ex, ey) from link forces, ground motion and friction."""
+    """Set the first guess of a slow slide's stage accelerations, along the directions (ex, ey) at the stages."""
     # Where friction rises steeply with the speed, an iteration that begins at a lower speed than the step's does not
     # leave the steep part. Linearized about the start, friction damps the speed at the rate `damping`. An implicit
     # Euler step of length nodes * h then has the acceleration at the start over 1 + nodes * h * damping.
@@ -185,7 +186,9 @@ def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> 
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
     px, py = broadcast_like(work.x[0, 0], nodes), broadcast_like(work.x[0, 1], nodes)
-    load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3))
+    load = Load(
+        px=px, py=py, fx=fx, fy=fy, ux=row(ground, 0), uy=row(ground, 1), uz=row(ground, 2), k_t=row(ground, 3)
+    )  # fmt: skip
     ax, ay, _, _ = acceleration_along(system, load, broadcast_like(start, nodes), ex, ey)
     along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
     along = along / (1.0 + nodes * (h * damping))
@@ -215,7 +218,10 @@ def barely_slips(system: System, work: Workspace) -> bool:
 
 @compiled
 def recover_failed_slide(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[int, int]:
-    """Return (SOLVED to go on or UNSOLVED to give up, next contact state) after a sliding step h, s, that failed."""
+    """Return how to go on after a sliding step of length h, s, that failed: SOLVED or UNSOLVED, and the next contact.
+
+    UNSOLVED means to give up. A slide from rest that moves nothing is replaced by rest.
+    """
     shortest = NEGLIGIBLE_STEP * settings.period
     if system.rate > 0.0:
         shortest = min(
@@ -233,7 +239,10 @@ def recover_failed_slide(system: System, work: Workspace, settings: RunSettings,
 
 @compiled
 def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Return the step's length up to where the slide slows to creep, at v_reg (0: at its start), and next contact."""
+    """Return the length of a step h, s, up to where the slide slows to v_reg, and the next contact state.
+
+    Below v_reg a slide under the regularized law is creep. The length is 0 if that begins at the start of the step.
+    """
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
@@ -249,7 +258,7 @@ def limit_step_to_creep(system: System, work: Workspace, h: float) -> tuple[floa
 
 @compiled
 def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
-    """Set the next sliding step's length from the last, h, s; h * factor would just have met the tolerance."""
+    """Set the length of the next sliding step after one of h, s, for which h * factor would have met the tolerance."""
     if h * factor > work.length or h == work.length:
         work.length = h * min(factor, work.max_growth)
     work.max_growth = MAX_LENGTH_FACTOR

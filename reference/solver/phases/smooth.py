@@ -13,8 +13,8 @@ from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SQUARED_SPEED, Workspace
 
 LEVEL_TOLERANCE = 1e-9  # relative distance of squared speed from v_reg^2, creep's limit, at which it becomes a slide
-EARLY_CROSSING = 1e-6  # share of a step: creep that reaches v_reg, its limit, earlier becomes a slide at step start
-NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2: above this squared speed at a stage, the end of creep (v_reg) is sought
+EARLY_CROSSING = 1e-6  # creep that reaches v_reg within this share of a step becomes a slide at the step's start
+NEAR_LEVEL_FRACTION = 0.8  # creep's end is looked for if the squared speed at a stage is above this share of v_reg^2
 MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times in which friction makes the velocity decay
 
 
@@ -28,7 +28,10 @@ def begin_smooth(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def limit_step_to_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
-    """Return the step's length up to where creep becomes a slide, at v_reg (0: at its start), and next contact."""
+    """Return the length of a step h, s, up to where creep becomes a slide, at v_reg, and the next contact state.
+
+    The length is 0 if that happens at the start of the step. Lubricated sliding goes on.
+    """
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact

@@ -26,9 +26,9 @@ FIRST_STEP = 1.0  # change of slip direction, rad, or of ln v, for which the len
 MIN_FIRST_ACCELERATION = 1e-3
 MAX_GROWTH = 2.0  # largest ratio of a step to the length with which the last one would just have met the tolerance
 MAX_CHAIN_ANGLE = 0.7  # rad, largest phase angle of the upper bodies' fastest vibration in one step
-# A slide that speeds up again leaves stretched time (dt = v dtau) once speed / acceleration exceeds both times below.
-LEAVING_TIME_FRACTION = 0.3  # share of a step in plain time: stretched time ends only at longer speed / acceleration
-MIN_LEAVING_TIME = 0.05  # share of RunSettings.period: stretched time (dt = v dtau) ends only at longer v / v'
+# A slide that speeds up again leaves stretched time (dt = v dtau) once v / v', a time, exceeds both bounds below.
+LEAVING_TIME_FRACTION = 0.3  # a slide leaves stretched time only if v / v' is above this share of a plain step
+MIN_LEAVING_TIME = 0.05  # a slide leaves stretched time only if v / v' is above this share of RunSettings.period
 # Speed below which a platform that friction can hold may count as stopped: this number * square root of the relative
 # tolerance of accelerations * (loading's acceleration * RunSettings.period / 2 pi)
 MAX_STOPPED_SPEED = 0.03
@@ -38,30 +38,30 @@ MAX_DAMPED_JUMP = 0.01
 # Then the slide is followed down to MIN_FOLLOWED_SPEED. No peak is possible below DECISIVE_ARC_FRACTION of the
 # platform's peak so far, or below DECISIVE_RISE_FRACTION of the squared peak of a body above, on which the turn acts by
 # its vertical acceleration alone.
-MIN_FOLLOWED_SPEED = 1e-10  # share of (loading's acceleration * period / 2 pi): slower slides are not followed
-DECISIVE_ARC_FRACTION = 0.97  # share of the platform's peak: with more in the turn to its stop, a slide is followed
-DECISIVE_RISE_FRACTION = 0.999  # share of an upper body's squared peak: with more in the turn, a slide is followed
-# Share of an upper body's squared peak: if its squared acceleration rises by less in the turn, no slide is followed
+MIN_FOLLOWED_SPEED = 1e-10  # slides below this share of (loading's acceleration * period / 2 pi) are not followed
+DECISIVE_ARC_FRACTION = 0.97  # a slide is followed if the turn before its stop has more of the platform's peak
+DECISIVE_RISE_FRACTION = 0.999  # a slide is followed if the turn has more of an upper body's squared peak
+# No slide is followed for an upper body whose squared acceleration rises by less than this share of its squared peak
 NEGLIGIBLE_RISE = 1e-9
 LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg, the limit of creep, at which a slide becomes creep
-EARLY_CROSSING = 1e-9  # share of a step: a slide that slows to v_reg (limit of creep) within it creeps from step start
+EARLY_CROSSING = 1e-9  # a slide that slows to v_reg within this share of a step creeps from the start of the step
 # Forces count as constant until the stop if it is nearer than this number * RunSettings.period * square root of the
 # relative tolerance of accelerations
 MAX_FROZEN_TIME = 0.01
-# Largest change of friction until rest, as share of its rise from rest to high speed, that counts as none
+# A change of friction until rest counts as none if it is at most this share of friction's rise from rest to high speed
 NEGLIGIBLE_FRICTION_RISE = 1e-12
 # A slide leaves the phase of stopping, as its speed hardly changes, if the time to its stop is this many times the one
 # (STOP_WITHIN_STEPS, STOP_WITHIN_TIME) below which a slide enters this phase
 MIN_STEADY_TIMES = 2.0
 MAX_STRAIGHT_TURN = 1e-6  # ratio of sideways acceleration to friction below which a slide counts as straight
-# Share of (loading's acceleration * period / 2 pi): at lower speed a straight slide that friction cannot hold reverses
+# A straight slide that friction cannot hold reverses below this share of (loading's acceleration * period / 2 pi)
 MAX_TURNING_POINT_SPEED = 1e-12
-NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance: a smaller change of slip directions ends Newton's method
+NEAR_STOP_NEWTON_FRACTION = 1e-3  # Newton's method ends if slip directions change by less, as share of the tolerance
 # Bounds on the change of ln v in a step: time, position are integrals of v and v^2 over stretched time (dt = v dtau),
 # whose error the accelerations do not show where forces stay constant. With both bounds below, this error is less than
 # 1e-8 of the time and the distance to the stop at the start of the step.
 MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound on the change of ln v in the first step
-LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of later steps' bounds on log speed change, per decrease of log speed so far
+LOG_SPEED_CHANGE_GROWTH = 0.7  # increase of this bound in later steps, per decrease of ln v since the first step
 
 
 @compiled
@@ -91,7 +91,11 @@ def propose_stretched_length(system: System, work: Workspace) -> float:
 
 @compiled
 def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Return the step's length to a kink of loading or temperature factor, or creep at v_reg (0: now); next contact."""
+    """Return the length of a step h up to its first event, and the next contact state; lengths are in stretched time.
+
+    An event is a kink of the loading or the temperature factor, or the speed v_reg, at which creep begins under the
+    regularized law. The length is 0 if creep begins at the start of the step.
+    """
     limit = next_kink(system, work, settings)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
         portion = locate_level_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
@@ -112,7 +116,10 @@ def limit_step_to_kink_or_creep(system: System, work: Workspace, settings: RunSe
 
 @compiled
 def commit_stopping_step(system: System, work: Workspace, settings: RunSettings, h: float, factor: float) -> int:
-    """Make time, slip direction and speed at a step's end the new ones near a stop; return the next contact state."""
+    """Make time, slip direction and speed at the end of a step near a stop the new ones; return the next contact state.
+
+    The length h, in stretched time, times `factor` would just have met the tolerance.
+    """
     # In stretched time a slide never reaches its stop: ln v falls without end. Three things end the phase. The platform
     # counts as stopped (`contact_after_stop`). Or it gathers speed again behind its slowest point: then plain time
     # resolves the slide once v / v' is a good part of a plain step. Or friction that rises with the speed balances the
@@ -172,7 +179,10 @@ def update_peaks_by_arc(system: System, work: Workspace, load: Load, can_integra
 
 @compiled
 def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
-    """Return REST or SLIDING if the platform has stopped, else STOPPING; set work.early_rest: time left to slide, s."""
+    """Return REST or SLIDING if the platform has stopped, else STOPPING.
+
+    If it rests, work.early_rest becomes the time, s, that it would still have slid.
+    """
     # A platform that friction can hold (excess <= 0) has stopped when the remaining slide changes nothing: its speed
     # and the time left are small (both bounds go with the root of the tolerance, since the distance to the stop is
     # quadratic in speed and time), the dampers feel no jump, friction is that of rest, and the peaks in the turn before

@@ -55,7 +55,10 @@ MAX_SHIFT = 0.5  # largest relative change of a step's length that moves its end
 
 @compiled
 def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) -> None:
-    """Set the accelerations at a phase's start; after plastic slip (`slid`), scale the friction force to its limit."""
+    """Set the accelerations at the start of an elastic or plastic phase.
+
+    After plastic slip (`slid`), whose steps compute the direction of the friction force alone, scale it to its limit.
+    """
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
@@ -71,9 +74,9 @@ def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) ->
 @compiled
 def solve_yielding_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
     """
-    Solve for the stage accelerations of the platform and its friction force by Newton's method; return the outcome.
+    Solve a step of length h, s, for the platform's accelerations and its friction force; return the outcome.
 
-    `set_step_loads` comes before; `a[0]` holds the first guess. The iteration ends as in `solve_moving_step`.
+    `set_step_loads` comes before; work.a[0] holds the first guess. Newton's method ends as in `solve_moving_step`.
     """
     set_feedback(system, work, h)
     for axis in range(2):
@@ -106,11 +109,15 @@ def solve_yielding_step(system: System, work: Workspace, contact: int, h: float,
 
 @compiled
 def set_motion(system: System, work: Workspace, contact: int) -> None:
-    """Set stage accelerations and friction rates, in work.shear, from motion, driving acceleration and friction."""
+    """Evaluate the equations at the stages: rows MOTION and FORCE_RATE of work.shear from those from ARGUMENTS on.
+
+    The rows that describe the friction limit are set, too, and work.stage gets reaction and determinant.
+    """
     shear, ground = work.shear, work.ground
     load = Load(
-        row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, DRIVE_ARGUMENT), row(shear, DRIVE_ARGUMENT + 1),
-        row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3),
+        px=row(shear, ARGUMENTS), py=row(shear, ARGUMENTS + 1),
+        fx=row(shear, DRIVE_ARGUMENT), fy=row(shear, DRIVE_ARGUMENT + 1),
+        ux=row(ground, 0), uy=row(ground, 1), uz=row(ground, 2), k_t=row(ground, 3),
     )  # fmt: skip
     ax, ay, reaction, determinant, rate_x, rate_y, limit, size, along = yielding_motion(
         system, contact, load, row(shear, ARGUMENTS + 2), row(shear, ARGUMENTS + 3), row(shear, FORCE),
@@ -129,7 +136,10 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def set_yielding_residual(system: System, work: Workspace, contact: int, h: float) -> tuple[int, float]:
-    """Set residuals of the stage equations for acceleration, force; return outcome and size of accelerations, m/s^2."""
+    """Set the residuals of the equations for acceleration and friction force at the stages.
+
+    Return an outcome, SOLVED if they can be evaluated, and the size of the accelerations, m/s^2.
+    """
     stage, shear, right = work.stage, work.shear, work.shear_right
     set_platform_motion(work, h, 2)
     for axis in range(2):
@@ -155,7 +165,8 @@ def set_yielding_residual(system: System, work: Workspace, contact: int, h: floa
 
 @compiled
 def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
-    """Set derivatives of acceleration and friction rate by differences in motion, driving acceleration and friction."""
+    """Set work.shear_slopes, the derivatives of accelerations and friction rates, by difference quotients."""
+    # Argument n is one of x, y, vx, vy, drive along x and y, friction force along x and y: the rows from ARGUMENTS on.
     shear, slopes = work.shear, work.shear_slopes
     for k in range(4):
         put(slopes, (8, k), row(shear, MOTION + k))
