@@ -12,18 +12,18 @@ from reference.problem import Outcome
 
 @dataclass
 class StageCost:
-    """Cost of one stage of a run: number of tasks, how many an earlier run stored, and processor time of all, s."""
+    """Cost of one stage of a run, which is the work of one kind."""
 
-    tasks: int = 0
-    stored: int = 0
-    seconds: float = 0.0
+    tasks: int = 0  # number of its tasks
+    stored: int = 0  # number of tasks whose results an earlier run stored
+    seconds: float = 0.0  # s, processor time of all its tasks
 
 
 @dataclass(frozen=True)
 class Overrun:
-    """Record stored for a task stopped at its timeout (s of processor time); ending: how it ended, in words."""
+    """Record that is stored in place of a result for a task that was stopped at its time limit."""
 
-    timeout: float
+    timeout: float  # s, the limit of its processor time
     ending: str  # how the task ended, in words
 
 

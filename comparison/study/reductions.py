@@ -17,7 +17,8 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-# What is skipped, function that tells whether a scene allows it, and the setting and its values in models that skip it
+# Each row: what is skipped, in words; the function that tells whether a scene allows that; the name of a setting of
+# models, and its values in the models that skip it.
 SKIPPED_COMPUTATIONS = (
     ("every run but one per harmonic", is_linear, "equations", ("small",)),
     ("motion across its plane", is_planar, "equations", ("small", "exact")),

@@ -102,7 +102,12 @@ def select_names(
     skip: Sequence[str] | None,
     also: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Return names of selected analyses: `only` or the usual ones, and `also`, plus what they need, less `skip`."""
+    """
+    Return the names of the selected analyses.
+
+    They are those of `only`, or the usual ones if it is None, then those of `also` and all that they need. Those of
+    `skip`, and what needs them, are left out.
+    """
     needs = {each.name: each.needs for each in analyses if each.needs}
     kept = {each.name for each in analyses if not each.on_request} if only is None else set(only)
     kept |= set(also)

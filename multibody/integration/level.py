@@ -343,6 +343,8 @@ def bound_contact_force_change(scene: Scene, model: EngineModel) -> float:
     """Return a bound, in weights, on the change of contact force in a motion from rest; inf with vertical loading."""
     if model.ground.accelerates(2):
         return math.inf
+    # From rest no body is faster than `speed`, the largest acceleration of two harmonics along two axes times the
+    # duration. On the sphere the contact force then changes by v^2, centripetal, and by at most v^2 / 2 on the slope.
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
     return 1.5 * speed**2
 

@@ -50,7 +50,8 @@ UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 # Largest error by the warping load (part without resultant of closed supports' forces), as a share of the tolerance
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle.
+# Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle, that is
+# open and close again and again.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
 # Largest ratio of the numbers of steps of two successive levels, to predict the work: steps become half as long.
@@ -245,7 +246,11 @@ class LevelRuns:
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """Repeat the last level on supports as stiff as real bearings; return change (N,) of peaks, and if it ended."""
+        """
+        Repeat the last level on supports as stiff as real bearings.
+
+        Returns the changes (N,) of the peaks, at least those of an `earlier` level, and whether the run ended.
+        """
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._run_on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED_OUTCOMES:

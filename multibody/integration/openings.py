@@ -57,7 +57,11 @@ FIRST_STEP_OVER_RESPONSE = 0.25
 
 @dataclass(frozen=True)
 class Event:
-    """First opening or closing of contacts in a chunk: last row before it, mask (K,) of the contacts that change."""
+    """
+    First opening or closing of contacts in a chunk of a motion.
+
+    row: the last row before it. closes: whether contacts close, rather than open. contacts: mask (K,) of those that do.
+    """
 
     row: int
     closes: bool
