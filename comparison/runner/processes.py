@@ -144,7 +144,11 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None, group: str) -> Any:
-        """Make a call in a process kept for its group of tasks, return the result; end the process after too long."""
+        """
+        Make a call in a process that is kept for its group of tasks, and return its result or raise its error.
+
+        A process that died or exceeded the time limit is not used again.
+        """
         process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)

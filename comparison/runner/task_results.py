@@ -29,9 +29,10 @@ class Overrun:
 
 class TaskResults:
     """
-    Results of tasks, looked up by task and stored in `cache` for later runs; fresh: stored results are not read.
+    Results of tasks, looked up by task and stored in `cache` for later runs.
 
-    parts: what each stage cost. stored: the tasks whose results were read from the cache.
+    fresh: whether results that earlier runs stored are left unread. parts: cost of each stage, by its name. stored:
+    keys of the tasks whose results were read from the cache.
     """
 
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:

@@ -122,14 +122,22 @@ def import_function(path: str) -> Any:
 
 
 def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
-    """Return the amplification that a model computes for a scene; settings: added to the model's. Runs in a worker."""
+    """
+    Return the amplification that a model computes for a scene. Runs in a worker process.
+
+    settings: arguments of the model's function that are added to those of the model, or replace them.
+    """
     asked = {**model.settings, **settings}
     answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
     return answer
 
 
 def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
-    """Return one motion that a model computes for a scene; settings: added to the model's. Runs in a worker process."""
+    """
+    Return one motion that a model computes for a scene. Runs in a worker process.
+
+    settings: arguments of the model's function that are added to those of the model, or replace them.
+    """
     asked = {**model.motion_settings, **settings}
     motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
     return motion
@@ -137,11 +145,12 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Set amplification mu and error (M, N) to NaN where it failed or is out of range; own: by a model of this project.
+    Set amplification mu and its error, both (M, N), to NaN at phase pairs whose answer cannot be used.
 
-    An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
-    and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
-    infinite or above MAX_MU: its status (M,) becomes "value out of range". All changes are made in place.
+    An answer counts if its status begins with "ok". If it is of a model of this project (`own`), it counts, too, where
+    the tolerance is not met and the error is stated. No answer counts with a value that is negative, or with a value or
+    an error that is infinite or above MAX_MU: its status (M,) becomes "value out of range". All changes are made in
+    place.
     """
     with np.errstate(invalid="ignore"):
         absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()

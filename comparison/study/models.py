@@ -149,7 +149,11 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Return its amplification function's arguments at a study's tolerance; full: no early end, no reduction."""
+        """
+        Return the arguments of the model's amplification function at a study's tolerance.
+
+        full: whether every motion is computed to its end, and with a model that is not reduced.
+        """
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 

@@ -165,7 +165,12 @@ def impact_error_floor(before: int) -> float:
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Return errors (N,), raised after impacts to a share of the peaks, and to a peak's range where levels scatter."""
+    """
+    Return errors (N,) that are enlarged if the run had impacts, behind which levels may agree by chance.
+
+    They are at least a share of the peaks and, where levels scatter, at least the range of the peak over the levels.
+    before: number of coarser levels on equally stiff supports.
+    """
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)

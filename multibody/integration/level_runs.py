@@ -270,7 +270,7 @@ class LevelRuns:
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Soften later levels: supports for forces without resultant (warping) in `run`, contacts for small peaks."""
+        """Soften the supports of later levels as the warping load of `run` requires, and contacts for small peaks."""
         done = len(self.runs)
         if run.lifts_off:
             self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
@@ -291,7 +291,11 @@ def _with_physical_warping_compliance(level: Level) -> Level:
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """Return `level` with supports as soft, up to `softest`, as forces without resultant (warping) in `run` require."""
+    """
+    Return `level` with supports that give way to warping as far as the warping load of `run` requires.
+
+    Warping load is the part of the support forces that has no resultant. softest: largest compliance against warping.
+    """
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)

@@ -54,7 +54,12 @@ class PhasePair:
     def run_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
     ) -> EngineRun:
-        """Run the model at a level of accuracy, up to `stop` or, unless `keep`, until no large value can come."""
+        """
+        Run the model at a level of accuracy, up to `stop` or, unless `keep`, until no large value can come.
+
+        keep: whether the run keeps its motion. residual: absolute tolerance of the forces, in weights; None takes that
+        of the level.
+        """
         solver = EngineSolver(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         if self.model.springs is not None:

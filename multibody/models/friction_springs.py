@@ -232,6 +232,7 @@ def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
 
 def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
     """Find the step in which an extrapolated slip speed comes to zero; slip: (T,), over the speed that ends a slide."""
+    # a speed that is halved in a step comes to zero in the next one, if it falls on along a straight line
     rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
     if not len(rows):
         return None

@@ -178,7 +178,11 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set a link's stiffness: `shear` (2, 2), `twist`, `stiff` for axis and tilt; carried: mass m above, m x, m y."""
+    """
+    Set the stiffness of a link in units of the model: `shear` (2, 2), `twist`, and `stiff` in tension and bending.
+
+    carried: mass above the link, and that mass times x and y of its center, (3,).
+    """
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
