@@ -48,6 +48,7 @@ def list_skipped_computations(study: Study) -> list[SkippedComputation]:
 def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
     """Yield each computation that a scene makes needless, for example by symmetry: what, by which models, and why."""
     models = [model for model in study.hierarchy if model.applies(scene)]
+    # how many phase pairs of its surface each computed pair of a model stands for
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):
         concerned = [model for model, own in zip(models, shares) if own == share]

@@ -129,6 +129,8 @@ def make_selection(
     Analyses that concern the paper are made of other scenes only where they are named. Raises SceneError for a scene
     that names an unknown analysis.
     """
+    # `unnamed` and `on_request` are the analyses of the paper, and those made on request, which are absent because
+    # nobody named them, if no scene has them. One about which a scene decides itself is absent for another reason.
     of_the_paper = {each.name for each in analyses if each.of_the_paper}
     on_request = {each.name for each in analyses if each.on_request}
     by_scene, unnamed = {}, set(of_the_paper)

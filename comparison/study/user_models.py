@@ -92,7 +92,11 @@ def _file_of(function: Callable[..., Any]) -> Path | None:
 
 
 def load_user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function, or that at "module:name". Raises TypeError if it cannot take a scene and phases."""
+    """
+    Return a user's function, given itself or as "module:name".
+
+    Raises TypeError if it cannot take a scene and phases.
+    """
     if isinstance(path, str):
         module, name = path.split(":")
         function: Any = import_module(module)

@@ -81,7 +81,7 @@ class PhasePair:
         integrator: str,
         discontinuous: float | None,
     ) -> EngineRun:
-        """Run the model in `count` equal steps without error control, and keep the motion."""
+        """Run the model in `count` equal steps and keep the motion; the other arguments are those of `single_run`."""
         model, solver = self.model, EngineSolver(self.model, newton, residual, integrator, discontinuous)
         model.set_contact(penetration)
         start = self._find_start(penetration)

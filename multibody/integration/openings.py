@@ -144,6 +144,7 @@ class Openings:
             if length not in values:
                 done[length] = motion = self.solver.run(state, time, length, 1)
                 gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.contacts]
+                # a step that the engine cannot solve counts as one beyond the event
                 values[length] = -self.penetration if gaps is None else float((sign * gaps).min())
             return values[length]
 

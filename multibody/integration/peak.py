@@ -203,6 +203,7 @@ def _read_parabola_maximum(
     sample = float(size[row]), alternating, float(time[row])
     if not (first <= min(others) and max(others) <= last):
         return sample
+    # parabola: size[row] + slope t + curvature t^2, with the time t from the highest sample
     t = [float(time[other] - time[row]) for other in others]
     left, right = (float(size[other] - size[row]) / apart for other, apart in zip(others, t))
     curvature = (right - left) / (t[1] - t[0])

@@ -70,6 +70,7 @@ def set_contact_parameters(
     of the stiffness of all contacts together.
     """
     mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
+    # the total mass, 1, on the stiffness k = 1 / penetration is damped critically by 2 sqrt(k)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
     mbs.SetObjectParameter(contact, "contactDamping", 2.0 * damping_ratio / (count * np.sqrt(penetration)))
 
@@ -78,7 +79,8 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
     """
     Return the slip speed at the corner of the friction law, and the relaxation time of a slower slip.
 
-    Both are in units of the model, and inf if the law has no corner.
+    Both are in units of the model, and inf if the law has no corner. The relaxation time is m1 v_reg / (mu m_sum g)
+    with the platform's mass m1, the friction coefficient mu and the total mass m_sum.
     """
     friction, threshold = contact_law(scene, regularization, units)
     if scene.lubricated or friction == 0.0 or scene.dry_friction.elastic:
@@ -128,6 +130,7 @@ def settle_contact(state: EngineState, gap_rate: float, penetration: float, norm
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
     damping = 2.0 * DAMPING_RATIO / math.sqrt(penetration)
     excess_speed = sum(share * speed for share, speed in zip(normal, velocities[:3].tolist())) - gap_rate
+    # a change of the position along the normal makes the contact's spring exert the force that its damper exerted
     rise = -penetration * damping * excess_speed
     for axis, share in enumerate(normal):
         velocities[axis] -= share * excess_speed

@@ -227,7 +227,8 @@ def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
     if not len(rows):
         return None
     before, after = excess[rows[0] : rows[0] + 2].tolist()
-    return ContactChange(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
+    step_share = max(-before, 0.0) / (after - min(before, 0.0))
+    return ContactChange(row=int(rows[0]), contact=contact, step_share=step_share, slides=True)
 
 
 def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
@@ -237,13 +238,14 @@ def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
     if not len(rows):
         return None
     before, after = slip[rows[0] : rows[0] + 2].tolist()
-    return ContactChange(int(rows[0]) + 1, contact, min(after / (before - after), 1.0), slides=False)
+    step_share = min(after / (before - after), 1.0)
+    return ContactChange(row=int(rows[0]) + 1, contact=contact, step_share=step_share, slides=False)
 
 
 def make_friction_springs(
     mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
 ) -> FrictionSprings | None:
-    """Return the torsion springs of `contacts`, None if friction is rigid; first: index of their first coordinate."""
+    """Return the torsion springs of `contacts`, None if friction is rigid; first: the spheres' first coordinate."""
     if not scene.dry_friction.elastic:
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)

@@ -229,7 +229,7 @@ def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, cent
     if all(link.bars is None for link in links):
         return 0.0
     # `apart` maps the coordinates of all bodies to the six displacements and rotations of a link's upper end against
-    # its lower end. With it the stiffness matrix is a sum over the links, whose largest eigenvalue is the fastest mode.
+    # its lower end, so that the stiffness matrix is a sum over the links. Its fastest mode has the largest eigenvalue.
     size = BODY_COORDINATES * len(masses)
     inertia, stiffness = np.zeros((2, size, size))
     for body, (mass, tensor) in enumerate(zip(masses, tensors)):

@@ -42,6 +42,7 @@ class SpeedFriction:
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
+            # friction power, W, of one contact with coefficient 1 under its share of the weight, at slip speed 1
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
         # each contact's coefficient over the law's: above 1 to hold a contact at rest if friction yields on springs
         self.coefficient_ratios = [1.0] * len(contacts)
