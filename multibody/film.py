@@ -61,7 +61,12 @@ UNIT_BOX_CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """Settings of a film: factor on displacements, s of motion per s of film, frames per s, and size in pixels."""
+    """
+    Settings of a film.
+
+    stretch: factor by which displacements are drawn larger. speed: seconds of motion in a second of the film. rate:
+    frames per second of the film. size: width and height of a frame, pixels.
+    """
 
     stretch: float = 5.0
     speed: float = 1.0
@@ -101,7 +106,11 @@ def sample_frames(time: Array, values: Array, count: int) -> Array:
 
 
 def locate_box_corners(center: Array, size: Array, turns: Array) -> Array:
-    """Return corners (..., 8, 3), m, of boxes at `center` (..., 3), m, rotated by Rx Ry Rz of `turns` (..., 3), rad."""
+    """
+    Return the corners (..., 8, 3), m, of boxes with edges of length `size`, m, around the points `center`, m.
+
+    turns: angles a, b, c, rad, of each box, which is rotated by Rx(a) Ry(b) Rz(c). All arguments are (..., 3).
+    """
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
     turned: Array = (UNIT_BOX_CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
     return center[..., None, :] + turned
@@ -116,7 +125,13 @@ def choose_magnification(values: Array, seen: float) -> float:
 
 
 def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
-    """Return x and y of each contact point from its support, (F, K, 2), m; `shift`, `turns` (F, 3): of the platform."""
+    """
+    Return x and y of each contact point, measured from the place of its support, in all frames, (F, K, 2), m.
+
+    shift, turns: displacement, m, and rotation angles, rad, of the platform in each frame, (F, 3).
+    """
+    # A sphere of radius r lies in a depression of radius r + rho. If the center of the depression moves by u, the point
+    # of contact moves on the sphere by -u r / rho.
     supports = _support_places(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
@@ -149,11 +164,12 @@ def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -
     turns = sample_frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
     heights, sizes, factor = arrange_boxes(scene)
     gap = float(np.diff(heights).min(initial=np.inf))
+    # the largest drawn tilt, rad: the corners of the widest box drop by no more than a share of the gap between boxes
     dip = min(MAX_DRAWN_ROTATION, MAX_DRAWN_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
     tilt, yaw = choose_magnification(turns[..., :2], dip), choose_magnification(turns[..., 2], MAX_DRAWN_ROTATION)
     paths = trace_contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = choose_magnification(paths, MAX_DRAWN_ROTATION * float(np.hypot(*_support_places(scene).T).max()))
-    scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
+    path_factor = choose_magnification(paths, MAX_DRAWN_ROTATION * float(np.hypot(*_support_places(scene).T).max()))
+    scales = f"displacements x {stretch:g}, contact paths x {path_factor:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
     half_width = float(np.abs(shifts[..., :2]).max()) if scene.flat else 0.25 * scene.radius
@@ -164,7 +180,7 @@ def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -
         corners=locate_box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
         centers=centers,
         supports=_support_places(scene),
-        paths=_support_places(scene) + paths * closer,
+        paths=_support_places(scene) + paths * path_factor,
         swing_curve=stretch * np.column_stack([across, rise]),
         rest_place=scene.offsets[0],
         scales=scales,

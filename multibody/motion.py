@@ -95,7 +95,7 @@ def trajectory(
         built = assemble(scene, model, regularization, contact_force=True)
         pair = PhasePair(scene, built, checked, initial)
         if not np.isfinite(ground_peak(scene, [checked])[0]):
-            no_run = EngineRun(PeakReader(len(built.bodies), built.corner), 0.0)
+            no_run = EngineRun(peaks=PeakReader(len(built.bodies), built.corner), stop=0.0)
             return replace(_make_trajectory(pair, no_run, Outcome.NON_FINITE_LOAD, 0.0), law=law)
         point = refine(pair, tolerance, keep=True, max_work=max_work)
     motion = replace(_make_trajectory(pair, point.finest, point.outcome, point.instant), law=law)
@@ -103,7 +103,7 @@ def trajectory(
         return motion
     coarser = tuple(_make_trajectory(pair, run, run.outcome, np.nan) for run, _ in point.coarser)
     shares = tuple(share for _, share in point.coarser)
-    return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
+    return replace(motion, accuracy=Accuracy(peak_error=point.errors, coarser=coarser, share=shares, floor=point.floor))
 
 
 @require_scene
@@ -210,6 +210,7 @@ def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: floa
     units, bodies = model.units, model.bodies
     time = motion.time * units.time
     ground = ground_acceleration(pair.scene, pair.phase, time)
+    # the recorder gives six numbers for each contact: the vector of its force, then its unit normal
     contacts = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)
     force, normal = contacts[:, :, 0], contacts[:, :, 1]
     normal_force = (force * normal).sum(axis=-1)
@@ -238,7 +239,12 @@ def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: floa
 def _measure_attitude(
     model: EngineModel, motion: EngineMotion, time: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]:
-    """Return rotations of the bodies, tilt and yaw of the platform, and intervals of lift-off of each support."""
+    """
+    Return the rotations of a motion as `Trajectory.extra` holds them, and the times at which supports lift off.
+
+    turns: angles of the bodies, (T, N, 3), rad. yaw, tilt: of the platform, (T,), rad. liftoff: number of the support,
+    start and end, s, of every such time, (L, 3).
+    """
     turns = motion.coordinates[:, model.bodies + 3]
     roll, pitch, yaw = turns[:, 0].T
     open_at = [
@@ -246,6 +252,7 @@ def _measure_attitude(
         for support, gap in enumerate(motion.gap.T)
         for interval in _find_intervals(time, gap >= 0.0, around=1)
     ]
+    # the sine of the tilt is the horizontal part of the platform's own vertical axis
     tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
     return {"yaw": yaw, "tilt": tilt, "turns": turns, "liftoff": np.array(open_at).reshape(-1, 3)}
 

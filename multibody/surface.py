@@ -162,9 +162,11 @@ class _ReducedModel:
         self, pairs: Array, ground: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> tuple[Array, Array, NDArray[np.str_], Array, Array]:
         """
-        Return amplification, error (M, N); status, time of failure, s, displacement, m, (M,), at phases (M, 2), rad.
+        Compute the amplification at phase pairs (M, 2), rad, to a relative error of `tolerance`.
 
-        ground: denominators of (5.1), (M,), m/s^2.
+        ground: largest ground accelerations, the denominators of (5.1), (M,), m/s^2. Returns amplifications and their
+        errors, both (M, N), then statuses, the instants, s, at which a status other than ok arose, and the largest
+        displacements of the platform, m, all three (M,).
         """
         count = len(pairs)
         mu, error = np.full((2, count, len(self.scene.bodies)), np.nan)
@@ -185,7 +187,11 @@ class _ReducedModel:
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        """Run accuracy levels at one loading phase pair to tolerance; the complete model's if the reduced one fails."""
+        """
+        Run levels of accuracy at one phase pair until the peaks meet the tolerance.
+
+        If the reduced model has no answer, the model that the caller named is run.
+        """
         pair = PhasePair(self.scene, self.built, phase, in_full=self.in_full)
         point = refine(pair, tolerance, levels=levels, max_work=max_work)
         if self.complete is not None and np.isnan(point.peaks).any():
@@ -210,4 +216,4 @@ def _reduce_model(scene: Scene, model: str, regularization: float | None, full: 
         """Assemble the unreduced model named by the caller, for loading phases where the reduced one has no result."""
         return scene, assemble(scene, model, regularization)
 
-    return _ReducedModel(moving, built, complete if chosen != model else None, full)
+    return _ReducedModel(scene=moving, built=built, complete=complete if chosen != model else None, in_full=full)

@@ -22,7 +22,11 @@ T = TypeVar("T")  # type of what an attempted function returns
 
 
 def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = print_on_stderr) -> T | None:
-    """Return what `act` returns; None if it raises an error, with a line to `say` that has `what` and the reason."""
+    """
+    Return what `act` returns. If it raises an error, pass to `say` a line that names `what` and why, and return None.
+
+    Errors that mean that no file can be written at all are raised.
+    """
     try:
         return act()
     except OutputError:

@@ -69,7 +69,11 @@ class CacheKey:
 
 
 class Cache:
-    """Results stored in subfolders of `folder`; kept: number of results read or written, by kind of result."""
+    """
+    Store of results on disk, in subfolders of `folder`.
+
+    kept: number of results read or written through this object, by kind of result.
+    """
 
     def __init__(self, folder: Path) -> None:
         """Use this folder for the files; it need not exist yet."""
@@ -214,7 +218,11 @@ def _measure_group(group: Path) -> int:
 
 
 def _pack_value(about: Any, value: Any) -> bytes:
-    """Return a result as bytes: a line of JSON, then its arrays; about: what it depends on. Raises TypeError."""
+    """
+    Return a result as bytes: a line of JSON, then its arrays. Raises TypeError for a value that cannot be stored.
+
+    about: what the result depends on, for readers of the file.
+    """
     arrays = BytesIO()
     count = 0
 

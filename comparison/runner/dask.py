@@ -114,7 +114,12 @@ class ClusterExecutor(Executor):
         return max(self._count, 1)
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Start a call on a worker; with a time limit, s, in a separate process, so that the worker survives it."""
+        """
+        Start a call on a worker.
+
+        seconds: limit of its processor time. A call with a limit runs in a separate process, which the worker survives.
+        group: has no effect here.
+        """
         if self._client.status != "running":
             raise ExecutorLostError(CONNECTION_LOST)
         answer: Future[Any] = Future()

@@ -11,13 +11,18 @@ from pathlib import Path
 
 from reference.support.files import read_file
 
-MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"  # name of the list of written files; of its format
+MANIFEST = "manifest.json"  # name of the file that lists the files which the study wrote into its folder
+SCHEMA = "phase-resonance/manifest"  # text by which such a list is known
 MAX_FILE_BYTES = 2**30  # size in bytes above which a file is not read and counts as not written by the study
 
 
 @dataclass(frozen=True)
 class OwnedFile:
-    """File that the study wrote: command that wrote it, hashes of its content; two while it is being replaced."""
+    """
+    File that the study wrote.
+
+    command: the command that wrote it. hashes: hash of its content; while it is being replaced, of old and new content.
+    """
 
     command: str
     hashes: tuple[str, ...]

@@ -25,7 +25,17 @@ class MappedAnalysis(Analysis[Result]):
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Return the tasks: one call of the function for each argument."""
         compiled, arguments = self.needs_compiled_reference, self.task_arguments(study, surfaces)
-        return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
+        return [
+            Task(
+                function=self.function,
+                argument=each,
+                stage=self.stage,
+                seconds=1.0,
+                about=each[0],
+                needs_compiled_reference=compiled,
+            )
+            for each in arguments
+        ]
 
     def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:
         """Return what the tasks computed, in the order of the arguments; `without_value` stands for a failed task."""

@@ -136,10 +136,10 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
 
 @dataclass
 class StagedReport:
-    """A report that is being written: its temporary folder, and its final place."""
+    """A report that is being written."""
 
-    folder: Path
-    place: Path
+    folder: Path  # temporary folder into which it is written
+    place: Path  # folder to which it moves
 
 
 @contextmanager

@@ -4,10 +4,13 @@ Worker processes of this machine, each with a pipe of its own: one that dies or 
 The system ends a process that computes for longer than its task may, also in the middle of compiled code, where no
 handler of Python would run. It counts the process's own processor time: what else the machine does makes no task fail.
 
-What the runner asks of any executor beyond `concurrent.futures`, all of it optional: `width`, how many tasks to keep at
-work; `start(call, seconds, group)`, a call in a process of its group, with a limit of processor time; from a future
-`WorkerDiedError` and `TimeLimitError`, where the call has ended its process and harmed no other, and
-`ExecutorLostError`, where there is no going on; `abandon`, to end at once.
+The runner accepts any executor of `concurrent.futures`. It uses the following where an executor has it:
+
+- `width` is the number of tasks to keep at work.
+- `start(call, seconds, group)` makes a call in a process that serves this group, with a limit of processor time.
+- A future raises `WorkerDiedError` or `TimeLimitError` if the call has ended its process and harmed no other call. It
+  raises `ExecutorLostError` if the executor can do nothing more.
+- `abandon` ends all work at once.
 """
 
 from __future__ import annotations
@@ -141,7 +144,11 @@ class Workers(Executor):
         self._threads.shutdown(wait=False, cancel_futures=True)
 
     def _run(self, call: Call, seconds: float | None, group: str) -> Any:
-        """Make a call in a process kept for its group of tasks, return the result; end the process after too long."""
+        """
+        Make a call in a process that is kept for its group of tasks, and return its result or raise its error.
+
+        A process that died or exceeded the time limit is not used again.
+        """
         process = self._free_process(group)
         try:
             value, error = process.run(call, seconds)

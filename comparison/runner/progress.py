@@ -32,12 +32,14 @@ class Display:
 
     The time left follows from the speed so far, in which a tenth of all work counts as if done at its estimated cost.
     The first piece of work is left out of it, because it starts the workers.
-
-    total: all work, in estimated s of processor time. jobs: number of workers.
     """
 
     def __init__(self, total: float, jobs: int, show: Callable[[Display], None] = lambda display: None) -> None:
-        """Start timing; total: estimated processor time of all work, s; jobs: workers; show: called on each advance."""
+        """
+        Start timing.
+
+        total: estimated processor time of all work, s. jobs: number of workers. show: called when work is done.
+        """
         self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
         self._what = ""
         self.begin = time.monotonic()
@@ -45,7 +47,11 @@ class Display:
         self._first: tuple[float, float] | None = None
 
     def advance(self, what: str, count: str, seconds: float) -> None:
-        """Record finished work; what: its stage, in words; count: "n of m"; seconds: its estimated processor time."""
+        """
+        Record finished work.
+
+        what: name of its stage. count: how much of the stage is done, "n of m". seconds: its estimated processor time.
+        """
         self.done += seconds
         if self._first is None:
             self._first = time.monotonic(), self.done
@@ -69,6 +75,7 @@ class Display:
     def seconds_left(self) -> float:
         """Return the estimated time until all work is done, s."""
         work, now = max(self.total - self.done, 0.0), time.monotonic()
+        # wall time per second of work: that of the work done since the first piece, and of the tenth that is assumed
         before, earlier = self._first or (now, self.done)
         rough = max(ROUGH_COST_SHARE * self.total, 1.0)
         return work * (now - before + rough / self._jobs) / (self.done - earlier + rough)

@@ -97,9 +97,9 @@ class Runner:
         for work in self._queue:
             self._total[work.task.stage] += work.task.points
         with open_executor(self.executor, min(self.jobs, len(self._queue))) as executor:
-            self._run_sweep(executor)
+            self._run_queue(executor)
 
-    def _run_sweep(self, executor: Executor) -> None:
+    def _run_queue(self, executor: Executor) -> None:
         """Compute all tasks in the queue and store each result as it arrives."""
         try:
             while self._queue or self._at_work:
@@ -119,7 +119,12 @@ class Runner:
             raise
 
     def _fill_workers(self, executor: Executor, arriving: bool = False) -> None:
-        """Start tasks until each worker has one; arriving: in queue order, as unread results may free waiting tasks."""
+        """
+        Start tasks until each worker has one.
+
+        arriving: whether results have come that are not read yet, which may free a waiting task. Then only the first
+        task of the queue may start, so that none overtakes it.
+        """
         while len(self._at_work) < getattr(executor, "width", self.jobs):
             candidates = list(self._queue)[:1] if arriving else self._queue
             ready = (work for work in candidates if not (self._first and work.task.needs_compiled_reference))
@@ -207,7 +212,13 @@ def make_compiling_task() -> Task:
     One worker does that while the others compute with Exudyn, so that no two of them compile the same code.
     """
     scene = load_scene("fig3-I").with_values({"duration": COMPILING_DURATION})
-    return Task(_compile_reference, scene, "compiling the reference, once", 0.0, needs_compiled_reference=False)
+    return Task(
+        function=_compile_reference,
+        argument=scene,
+        stage="compiling the reference, once",
+        seconds=0.0,
+        needs_compiled_reference=False,
+    )
 
 
 def _compile_reference(scene: Scene) -> None:

@@ -20,7 +20,8 @@ from comparison.study.batches import Batch
 from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
-BATCH_KIND, RESULT_KIND = "batch", "result"  # kinds of stored results: of tasks of several phase pairs, and all others
+# Kinds of stored results: those of batches, which are tasks of several phase pairs, and those of all other tasks
+BATCH_KIND, RESULT_KIND = "batch", "result"
 # Number of calls of a user's own engine that may time out or end their process; then no further phase pair is computed
 MAX_FAILED_BATCHES = 2
 # Error message of a batch (several phase pairs) that is not computed because MAX_FAILED_BATCHES others failed

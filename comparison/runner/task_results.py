@@ -12,26 +12,27 @@ from reference.problem import Outcome
 
 @dataclass
 class StageCost:
-    """Cost of one stage of a run: number of tasks, how many an earlier run stored, and processor time of all, s."""
+    """Cost of one stage of a run, which is the work of one kind."""
 
-    tasks: int = 0
-    stored: int = 0
-    seconds: float = 0.0
+    tasks: int = 0  # number of its tasks
+    stored: int = 0  # number of tasks whose results an earlier run stored
+    seconds: float = 0.0  # s, processor time of all its tasks
 
 
 @dataclass(frozen=True)
 class Overrun:
-    """Record stored for a task stopped at its timeout (s of processor time); ending: how it ended, in words."""
+    """Record that is stored in place of a result for a task that was stopped at its time limit."""
 
-    timeout: float
+    timeout: float  # s, the limit of its processor time
     ending: str  # how the task ended, in words
 
 
 class TaskResults:
     """
-    Results of tasks, looked up by task and stored in `cache` for later runs; fresh: stored results are not read.
+    Results of tasks, looked up by task and stored in `cache` for later runs.
 
-    parts: what each stage cost. stored: the tasks whose results were read from the cache.
+    fresh: whether results that earlier runs stored are left unread. parts: cost of each stage, by its name. stored:
+    keys of the tasks whose results were read from the cache.
     """
 
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:

@@ -21,14 +21,14 @@ USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET
 
 @dataclass(frozen=True)
 class Batch:
-    """Consecutive phase pairs (M, 2), rad, of the ground for one call of a model; first: place of the first in all."""
+    """Consecutive phase pairs of one scene and model, which one call of the model's function computes."""
 
     scene: Scene
-    model: str
-    amplification: str
-    settings: Mapping[str, object]
-    first: int
-    phases: Array
+    model: str  # key of the model
+    amplification: str  # its function, "package:name"
+    settings: Mapping[str, object]  # further arguments of the function
+    first: int  # number of phase pairs of this scene and model in earlier batches
+    phases: Array  # the phase pairs, (M, 2), rad
     timeout: float | None = None  # s, limit on the processor time of the call that computes the batch
     group: str = ""  # key of a user's engine, which has its own workers and need not state errors of amplifications
 
@@ -39,7 +39,7 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """Return what all batches of a model and scene share, to key results: unnamed scene, function, settings."""
+        """Return all that decides the numbers of every batch of a scene and model; the names of both do not count."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
@@ -63,14 +63,28 @@ class Batch:
         status = [outcome for result in results for outcome in result.status]
         error_message = "; ".join(dict.fromkeys(result.error_message for result in results if result.error_message))
         return BatchResult(
-            mu, error, status, instant, sum(result.cost for result in results), error_message, displacement
+            mu=mu,
+            error=error,
+            status=status,
+            instant=instant,
+            cost=sum(result.cost for result in results),
+            error_message=error_message,
+            displacement=displacement,
         )
 
     def without_result(self, outcome: Outcome, error_message: str) -> BatchResult:
         """Return a result with NaN and the same outcome at every phase pair, and with the error message."""
         nothing, none = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
         status = [outcome.value] * self.points
-        return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
+        return BatchResult(
+            mu=nothing,
+            error=nothing.copy(),
+            status=status,
+            instant=none,
+            cost=0.0,
+            error_message=error_message,
+            displacement=none.copy(),
+        )
 
     def accepts(self, result: BatchResult) -> bool:
         """Return whether a result has the batch's numbers of phase pairs and bodies, and values where status is ok."""
@@ -90,15 +104,15 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Amplification mu, error (M, N) of a batch; status, instant, s, displacement, m, (M,); solver's error_message."""
+    """Answer of a model to a batch of M phase pairs of a scene with N bodies."""
 
-    mu: Array
-    error: Array
-    status: list[str]
-    instant: Array
-    cost: float
-    error_message: str
-    displacement: Array
+    mu: Array  # amplification, (M, N)
+    error: Array  # its estimated absolute error, (M, N)
+    status: list[str]  # outcome of every phase pair, (M,)
+    instant: Array  # s, instant at which a status other than ok arose, (M,)
+    cost: float  # s, processor time
+    error_message: str  # of the call; "" without an error
+    displacement: Array  # m, largest displacement of the platform, (M,)
 
 
 def import_function(path: str) -> Any:
@@ -108,14 +122,22 @@ def import_function(path: str) -> Any:
 
 
 def compute_amplification(scene: Scene, model: Model, phases: Any, **settings: object) -> Amplification:
-    """Return the amplification that a model computes for a scene; settings: added to the model's. Runs in a worker."""
+    """
+    Return the amplification that a model computes for a scene. Runs in a worker process.
+
+    settings: arguments of the model's function that are added to those of the model, or replace them.
+    """
     asked = {**model.settings, **settings}
     answer: Amplification = import_function(model.amplification)(model.scene_of(scene), phases, **asked)
     return answer
 
 
 def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) -> Trajectory:
-    """Return one motion that a model computes for a scene; settings: added to the model's. Runs in a worker process."""
+    """
+    Return one motion that a model computes for a scene. Runs in a worker process.
+
+    settings: arguments of the model's function that are added to those of the model, or replace them.
+    """
     asked = {**model.motion_settings, **settings}
     motion: Trajectory = import_function(model.trajectory)(model.scene_of(scene), phases, **asked)
     return motion
@@ -123,11 +145,12 @@ def compute_motion(scene: Scene, model: Model, phases: Any, **settings: object) 
 
 def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
     """
-    Set amplification mu and error (M, N) to NaN where it failed or is out of range; own: by a model of this project.
+    Set amplification mu and its error, both (M, N), to NaN at phase pairs whose answer cannot be used.
 
-    An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
-    and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
-    infinite or above MAX_MU: its status (M,) becomes "value out of range". All changes are made in place.
+    An answer counts if its status begins with "ok". If it is of a model of this project (`own`), it counts, too, where
+    the tolerance is not met and the error is stated. No answer counts with a value that is negative, or with a value or
+    an error that is infinite or above MAX_MU: its status (M,) becomes "value out of range". All changes are made in
+    place.
     """
     with np.errstate(invalid="ignore"):
         absurd = np.any((mu < 0.0) | (mu > MAX_MU) | (error > MAX_MU), axis=1).tolist()
@@ -156,7 +179,15 @@ def execute_batch(batch: Batch) -> BatchResult:
         mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in found.status]
         error_message = str(getattr(found, "error_message", ""))
-        result = BatchResult(mu, error, status, instant, float(found.cost), error_message, displacement)
+        result = BatchResult(
+            mu=mu,
+            error=error,
+            status=status,
+            instant=instant,
+            cost=float(found.cost),
+            error_message=error_message,
+            displacement=displacement,
+        )
         if not batch.fits(result):
             points, bodies = batch.points, len(batch.scene.bodies)
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")

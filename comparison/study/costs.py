@@ -17,8 +17,8 @@ COMPILING_SECONDS = 20.0  # s, time that compiling the reference takes, at its f
 STARTING_SECONDS, WRITING_SECONDS = 4.0, 4.0  # s, durations of loading modules and workers, and of writing a report
 # Duration, s, and bodies of a scene whose phase pair takes `Model.seconds` of processor time; others in proportion.
 USUAL_DURATION, USUAL_BODIES = 20.0, 2
-# Estimated processor time, s, of one motion computed by the reference: a constant part; then, both times the number of
-# bodies + 1, the parts per second of motion and per sample of the record.
+# Estimated processor time, s, of one motion computed by the reference. It has a constant part, a part per second of
+# motion and a part per sample of the record; the latter two are multiplied by the number of bodies + 1.
 MOTION_COST, MOTION_SECOND_COST, MOTION_KNOT_COST = 0.02, 4e-4, 3.7e-6
 # Processor time, s, of Exudyn per radian that the link of highest frequency vibrates; if bodies rotate, also per body.
 MOTION_RADIAN_COST, SPATIAL_RADIAN_COST = 8e-4, 1.25e-3

@@ -1,4 +1,4 @@
-"""Levels of a study: the same question on coarser grids first, so that a whole report is there early."""
+"""Levels of a study: the same question on coarser grids of phases first, so that a whole report is there early."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,7 +16,11 @@ MAX_PHASES_OF_LEVEL: tuple[Mapping[str, float], ...] = (
 
 @dataclass(frozen=True)
 class StudyLevel:
-    """One of `of` levels of a study, from few phases to all: the study with this level's phases, and level number."""
+    """
+    One level of a study: the study with few or all of its phases.
+
+    number, of: number of the level, from 1 for the coarsest, and the number of all levels.
+    """
 
     study: Study
     number: int
@@ -34,7 +38,11 @@ class StudyLevel:
 
 
 def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
-    """Return the levels of a study from coarse to fine; first: level from which on an analysis is run, by its key."""
+    """
+    Return the levels of a study from coarse to fine.
+
+    first: number of the level from which on each analysis is run, by the key of the analysis.
+    """
     made = [key for key in first if study.restrict_to(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MAX_PHASES_OF_LEVEL, start=1):
@@ -51,7 +59,7 @@ def make_levels(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
 
 
 def _describe_work(study: Study) -> tuple[object, ...]:
-    """Return grid, every how many phases each model computes, and analyses: equal where two levels compute the same."""
+    """Return all that distinguishes the work of a level: its grid, the strides of the models, and its analyses."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 
@@ -65,6 +73,7 @@ def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
     if study.grid % shared:
         return study
     grid = study.grid // shared
+    # a model computes every k-th phase of the thinner grid, k = stride / shared: `most` is grid / k, rounded up
     hierarchy = [
         replace(model, most=None if model.side == "reference" else -(-grid // (strides[model.key] // shared)))
         for model in study.hierarchy
@@ -73,7 +82,7 @@ def _coarsen_study(study: Study, most: Mapping[str, float]) -> Study:
 
 
 def _find_stride(study: Study, model: Model, most: float) -> int:
-    """Return k where a model computes every k-th phase of the study at a level with at most `most` phases per axis."""
+    """Return the stride k of a model at a level with at most `most` phases per axis: it computes every k-th phase."""
     stride, phases = study.strides[model.key], len(study.phase_indices(model))
     # A stride that does not divide the grid leaves uneven phases, which contain no coarser even grid: it stays.
     if stride * phases != study.grid:

@@ -89,18 +89,28 @@ def has_spatial_unloaded_bars(scene: Scene) -> bool:
 @dataclass(frozen=True)
 class Model:
     """
-    Model of the study: equations of motion, or an engine. `adds`: report's text on what it adds to the model before.
-    `settings`: function arguments. `assumptions`: its row in the report's table of equations. `applies`: whether the
-    scene gives it anything to add. `most`: phases per axis that its cost allows, or None; of a finer study it computes
-    every k-th phase. `symmetric`: whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they
-    are not computed again. `refusal`: the function that tells from the scene alone
-    why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
-    "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
-    trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
-    time of one call, s. `reading`: of (5.1), where friction is dry. `in_chain`: whether the scene's chain of models has
-    it, in which each adds one effect to the one before and all read (5.1) as integrated. `seconds`: rough processor
-    time of a phase pair of the scene that costs.py is for. `rigid`: whether friction is rigid in it where the scene's
-    yields.
+    Model of the study: equations of motion, or an engine.
+
+    Attributes:
+    - adds: Text of the report on what the model adds to the one before.
+    - side: "user" for an engine of a user (user_models.py), which has no place in the steps from model to model.
+    - amplification, trajectory: Functions of the model, each as "package:function"; a user's engine has no trajectory.
+    - settings: Further arguments of these functions.
+    - assumptions: Row of the model in the report's table of equations.
+    - most: Phases per axis that the model's cost allows, or None. Of a finer study it computes every k-th phase.
+    - symmetric: Tells whether mirrored phases (symmetry.py) give mirrored motions of a scene, so that they are not
+      computed again.
+    - applies: Tells whether the scene gives the model anything to add.
+    - refusal: Function that tells from the scene alone why all phase pairs would be refused, or "", with the contract
+      of `multibody.refusal`; as "package:function".
+    - effect: What it adds to the model before, as a name.
+    - like: Key of the reference's model with which a user's engine is compared.
+    - timeout: Limit of the processor time of one call, s.
+    - reading: What counts as peak acceleration in (5.1), where friction is dry.
+    - in_chain: Tells whether the scene's chain of models has it. In the chain each model adds one effect to the one
+      before, and peak accelerations are those of the motion as integrated.
+    - seconds: Rough processor time of a phase pair of the scene that costs.py is for.
+    - rigid: Whether friction is rigid in the model where the scene's friction yields.
     """
 
     key: str
@@ -113,7 +123,6 @@ class Model:
     assumptions: Mapping[str, str]
     batch: int  # number of phase pairs solved in one call, which then takes about a second
     most: int | None = None
-    # Function that tells whether, in this model of a scene, mirrored phases give the mirrored motion
     symmetric: Callable[[Scene], object] = field(default=applies_to_no_scene)
     applies: Callable[[Scene], bool] = field(default=applies_to_every_scene)
     refusal: str | None = None
@@ -140,7 +149,11 @@ class Model:
         return scene.with_yield_displacement(0.0) if self.rigid else scene
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
-        """Return its amplification function's arguments at a study's tolerance; full: no early end, no reduction."""
+        """
+        Return the arguments of the model's amplification function at a study's tolerance.
+
+        full: whether every motion is computed to its end, and with a model that is not reduced.
+        """
         asked = {"full": True} if full else {}
         return {**self.settings, "tolerance": self.tolerance(tolerance), **asked}
 
@@ -154,7 +167,8 @@ class Pair:
     """
     Two models whose difference is reported: `second` minus `first`, as a share of the amplification mu of `base`.
 
-    effect: what the second adds to the first, "" for a pair that several effects or the reading of (5.1) tell apart.
+    effect: what the second adds to the first; "" for a pair that differs by several effects, or by what counts as peak
+    acceleration. sentence: what the pair compares, in words.
     """
 
     key: str
@@ -211,16 +225,19 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
     other = "the most complete model of Exudyn" if complete else f"the {last.title}"
-    pairs = [Pair("total", "total", f"{printed} against {other}", first, last, first)]
+    against = f"{printed} against {other}"
+    pairs = [Pair(key="total", title="total", sentence=against, first=first, second=last, base=first)]
     # The next two pairs need models with results: within the tolerance and the budget, and with an answer.
     if engine is not None and engine in models:
         if engine is not last and first is asked[0]:
             sentence = f"{printed} against Exudyn under the paper's own assumption that no body turns"
-            pairs.append(Pair("translational", "translational", sentence, first, engine, first))
+            key = title = "translational"
+            pairs.append(Pair(key=key, title=title, sentence=sentence, first=first, second=engine, base=first))
         if reference in models:
             sentence = "same geometry and same friction law on both sides: this gap must close"
             title = "same equations and friction law"
-            pairs.append(Pair("like-for-like", title, sentence, reference, engine, reference))
+            key = "like-for-like"
+            pairs.append(Pair(key=key, title=title, sentence=sentence, first=reference, second=engine, base=reference))
     of_users = []
     for supplied in models_of(scene, hierarchy):
         if supplied.side == "user" and supplied.key not in left_out:
@@ -228,7 +245,8 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
             if like.key not in left_out:
                 sentence = f"the {like.title} against an engine of yours, which is said to solve the same"
                 title = f"{supplied.title}, against the {like.title}"
-                of_users.append(Pair(supplied.key, title, sentence, like, supplied, like))
+                key = supplied.key
+                of_users.append(Pair(key=key, title=title, sentence=sentence, first=like, second=supplied, base=like))
     return of_users + pairs
 
 
@@ -263,19 +281,26 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
         small, printed = known[SMALL.key], chain[0]
         above = "what the limits at stops add to the small equations as integrated"
         below = "what an integration of the small equations misses of the literal supremum"
-        pairs.append(Pair("supremum", "literal supremum above as integrated", above, printed, small, printed))
-        pairs.append(Pair("reading", "as integrated against literal supremum", below, small, printed, small))
-        last = chain[-1]
+        title = "literal supremum above as integrated"
+        pairs.append(Pair(key="supremum", title=title, sentence=above, first=printed, second=small, base=printed))
+        title = "as integrated against literal supremum"
+        pairs.append(Pair(key="reading", title=title, sentence=below, first=small, second=printed, base=small))
+        last, title = chain[-1], "total from the literal supremum"
         sentence = f"the literal supremum of the printed equations against the {last.title}"
-        pairs.append(Pair("supremum-total", "total from the literal supremum", sentence, small, last, small))
+        pairs.append(Pair(key="supremum-total", title=title, sentence=sentence, first=small, second=last, base=small))
     return pairs
 
 
 def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
-    """Return the pair of models that differ by `effect`, a share of mu of `base`; where: end of its key, or ""."""
+    """
+    Return the pair of models that differ by `effect`, which is reported as a share of the amplification of `base`.
+
+    where: end of the key of the pair, or "".
+    """
     title = effect or f"the step to the {second.title}"
     key = "-".join([*(effect or second.key).split(), *where.split()])
-    return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
+    sentence = f"what {title} adds to the {first.title}"
+    return Pair(key=key, title=title, sentence=sentence, first=first, second=second, base=base, effect=title)
 
 
 # Text on what counts as the peak acceleration of models in which all of the motion counts
@@ -433,7 +458,8 @@ SPATIAL = _model_after(
 MODEL_HIERARCHY: tuple[Model, ...] = (  # all models for rigid friction and stiff bars, from simple to complete
     SMALL, EXACT, SMALL_AS_INTEGRATED, EXACT_AS_INTEGRATED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# Further pairs to show an effect, besides successive models of the chain: effect, end of the pair's key, both models
+# Further pairs that show an effect, besides successive models of the chain. Each row: name of the effect, end of the
+# pair's key, and both models.
 BESIDE_THE_CHAIN = (
     (EXACT.effect, "supremum", SMALL, EXACT),
     (EXACT_AS_INTEGRATED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
@@ -476,7 +502,11 @@ _YIELDS = "elastic up to mu N before it slides, mu constant or of the slip veloc
 
 
 def _tell_of_yielding(model: Model, only: bool) -> Model:
-    """Return `model` with texts on elastic yielding of friction; only: whether friction yields in every scene."""
+    """
+    Return `model` with texts that mention friction which yields elastically before it slides.
+
+    only: whether friction yields in every scene, so that the texts on rigid friction are dropped.
+    """
     if model.applies is has_dry_friction:  # used with rigid friction only: its texts stay
         return model
     friction = _YIELDS if only else f"{model.assumptions['friction']}; where the scene says so, {_YIELDS}"

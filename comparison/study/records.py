@@ -12,7 +12,7 @@ def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list
     """
     Return a description of every recorded motion; its scale is 1 if the scenes scale it by different factors.
 
-    names: of the motions of the scenes; "" and without them a motion is named by its files.
+    names: name of the motion of each scene; "" stands for the names of its files, as for all motions without `names`.
     """
     read: dict[Hashable, RecordDescription] = {}
     for scene, name in zip(scenes, names or [""] * len(scenes), strict=True):

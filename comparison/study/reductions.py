@@ -17,7 +17,8 @@ from reference.problem.reductions import (
     is_planar,
 )
 
-# What is skipped, function that tells whether a scene allows it, and the setting and its values in models that skip it
+# Each row: what is skipped, in words; the function that tells whether a scene allows that; the name of a setting of
+# models, and its values in the models that skip it.
 SKIPPED_COMPUTATIONS = (
     ("every run but one per harmonic", is_linear, "equations", ("small",)),
     ("motion across its plane", is_planar, "equations", ("small", "exact")),
@@ -47,6 +48,7 @@ def list_skipped_computations(study: Study) -> list[SkippedComputation]:
 def _omissions_of_scene(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
     """Yield each computation that a scene makes needless, for example by symmetry: what, by which models, and why."""
     models = [model for model in study.hierarchy if model.applies(scene)]
+    # how many phase pairs of its surface each computed pair of a model stands for
     shares = [study.points(model, scene) / len(study.solved(scene, model)) for model in models]
     for share in sorted(set(shares) - {1.0}, reverse=True):
         concerned = [model for model, own in zip(models, shares) if own == share]

@@ -102,7 +102,12 @@ def select_names(
     skip: Sequence[str] | None,
     also: Sequence[str] = (),
 ) -> tuple[str, ...]:
-    """Return names of selected analyses: `only` or the usual ones, and `also`, plus what they need, less `skip`."""
+    """
+    Return the names of the selected analyses.
+
+    They are those of `only`, or the usual ones if it is None, then those of `also` and all that they need. Those of
+    `skip`, and what needs them, are left out.
+    """
     needs = {each.name: each.needs for each in analyses if each.needs}
     kept = {each.name for each in analyses if not each.on_request} if only is None else set(only)
     kept |= set(also)
@@ -124,6 +129,8 @@ def make_selection(
     Analyses that concern the paper are made of other scenes only where they are named. Raises SceneError for a scene
     that names an unknown analysis.
     """
+    # `unnamed` and `on_request` are the analyses of the paper, and those made on request, which are absent because
+    # nobody named them, if no scene has them. One about which a scene decides itself is absent for another reason.
     of_the_paper = {each.name for each in analyses if each.of_the_paper}
     on_request = {each.name for each in analyses if each.on_request}
     by_scene, unnamed = {}, set(of_the_paper)

@@ -22,7 +22,11 @@ STUDY_TOLERANCE = 1e-3
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
-    """Raise SceneError, one line, if two scenes or families of scenes share a name; names: source and name of each."""
+    """
+    Raise SceneError, one line, if two scenes or families of scenes share a name.
+
+    names: of each, the place where it is stated, such as a file, and its name.
+    """
     seen: dict[str, str] = {}
     for source, name in names:
         if name in seen:
@@ -63,8 +67,9 @@ def levels_of_phases(grid: int) -> NDArray[np.intp]:
 @dataclass(frozen=True)
 class Study:
     """
-    Scenes x models x a grid of `grid` by `grid` phase pairs, each amplification mu to the relative error `tolerance`.
+    Question of a study: the amplification of every scene under every model, on a grid of phases.
 
+    The grid has `grid` phases along each of two axes. Amplifications have a relative error of at most `tolerance`.
     A model that is too expensive for all of them computes every k-th phase of either axis, k being its stride. Strides
     are multiples of one another, so that of any two models the coarser grid is part of the finer. Phases whose motion
     is the mirror image of another's are not computed again, and models leave out what the scene does not require,
@@ -85,7 +90,7 @@ class Study:
         strides, stride = {}, 1
         for model in sorted(self.hierarchy, key=lambda model: -(model.most or self.grid)):
             most = min(model.most or self.grid, self.grid)
-            stride *= -(-self.grid // (most * stride))
+            stride *= -(-self.grid // (most * stride))  # by the smallest whole factor that leaves at most `most` phases
             strides[model.key] = stride
         return strides
 
@@ -154,6 +159,8 @@ class Study:
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
         """Return the phase pairs to compute, as indices on the whole grid: for each nested grid those that it adds."""
+        # A pair belongs to the coarsest nested grid that contains both of its phases. The position of a phase on the
+        # whole grid, divided by the stride, is its number among the phases of the model.
         solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
         level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
@@ -182,7 +189,17 @@ class Study:
         for places in self.places_by_level(scene, model):
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
-                about = first + start, part
-                batches.append(Batch(moved, model.key, model.amplification, settings, *about, model.timeout, group))
+                batches.append(
+                    Batch(
+                        scene=moved,
+                        model=model.key,
+                        amplification=model.amplification,
+                        settings=settings,
+                        first=first + start,
+                        phases=part,
+                        timeout=model.timeout,
+                        group=group,
+                    )
+                )
             first += len(places)
         return batches

@@ -43,9 +43,9 @@ MAX_STATUS_LETTERS = 60  # largest number of letters of an engine's own status t
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """Amplification by a user's engine. error_message: quotes statuses that are no known outcome; "" without any."""
+    """Amplification by a user's engine."""
 
-    error_message: str = ""
+    error_message: str = ""  # quotes the engine's statuses that are no known outcome; "" if there are none
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
@@ -92,7 +92,11 @@ def _file_of(function: Callable[..., Any]) -> Path | None:
 
 
 def load_user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
-    """Return the function, or that at "module:name". Raises TypeError if it cannot take a scene and phases."""
+    """
+    Return a user's function, given itself or as "module:name".
+
+    Raises TypeError if it cannot take a scene and phases.
+    """
     if isinstance(path, str):
         module, name = path.split(":")
         function: Any = import_module(module)
@@ -108,7 +112,11 @@ def load_user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
 
 
 def make_user_model(name: str, engine: Mapping[str, Any], like: str = DEFAULT_LIKE, limit: float = TIME_LIMIT) -> Model:
-    """Return the model of a user's engine, with the settings of the reference's model `like`; limit: s per call."""
+    """
+    Return the model of a user's engine, with the settings of the reference's model `like`.
+
+    engine: description of the engine, see `engine_description`. limit: processor time of one call, s.
+    """
     model = next(known for known in MODEL_HIERARCHY if known.key == like)
     return Model(
         key=name,
@@ -195,7 +203,12 @@ def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
 
 
 def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
-    """Return each phase pair's outcome, "solver failed" if its status is no known one, and a message that quotes it."""
+    """
+    Return the outcome of every phase pair, and a message that quotes the statuses that are no known outcome.
+
+    stated: the engine's statuses; None stands for "ok" everywhere. An unknown one becomes "solver failed" unless it
+    begins with "ok".
+    """
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")

@@ -43,7 +43,7 @@ Array = NDArray[np.float64]
 # The largest step is divided so many times by `STEP_RATIO` in the first chunk, in which the contact force settles.
 FIRST_DIVISIONS = 2
 
-# If the step has its largest size or friction yields: most steps in a chunk, over their number in the chunk before
+# Largest ratio of the numbers of steps in a chunk and in the one before, at the largest step or where friction yields.
 MAX_CHUNK_GROWTH = 2
 
 # Number of Newton iterations that count as one step of the budget: a step that needs more counts as several.
@@ -174,7 +174,12 @@ class _AdaptiveRun:
     def _find_last_accurate_row(
         self, motion: EngineMotion, step_ratio: Array
     ) -> tuple[int, int | None, Event | None, ContactChange | None]:
-        """Find the last accurate row, and what ends it: a step too large, an event, a change of sliding, or nothing."""
+        """
+        Find the last row up to which a motion is accurate, and what ends the accurate part.
+
+        Returns that row; then the row of a step that is too large, the opening or closing of a contact, and the begin
+        or end of a slide, at most one of which is not None.
+        """
         failing, last = find_first_row(step_ratio > 1.0), len(motion.time) - 1
         if self.at.divisions >= self.level.max_divisions or failing > last:
             too_large = None
@@ -231,7 +236,12 @@ class _AdaptiveRun:
         return True
 
     def _accept_steps(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
-        """Accept steps as far as the model is valid, and put the checkpoint there; return whether the run goes on."""
+        """
+        Accept steps as far as the model is valid, and put the checkpoint there; return whether the run goes on.
+
+        size: absolute accelerations of the bodies, (T, N). settle: whether the contact force is made by the gap alone,
+        as smaller steps follow. read: whether peaks are read in these steps.
+        """
         outcome, row, instant = find_termination(motion, self.model)
         if self.integration.keep:
             self.run.chunks.append(motion.cut_at(row))
@@ -307,7 +317,11 @@ class _AdaptiveRun:
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
-        """Enlarge the step if recent ones allow it; at the largest size, choose how many come next from `asked`."""
+        """
+        Enlarge the step if recent steps allow it; at its largest size, choose the number of steps in the next chunk.
+
+        asked: number of steps that were wanted for this chunk.
+        """
         # The next chunk grows from the number of steps asked for, not from a smaller one that ended at a sample of the
         # record: otherwise one short chunk would make the next ones short, and restarts cost accuracy.
         at = self.at

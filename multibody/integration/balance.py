@@ -45,7 +45,11 @@ CURRENT_CONFIGURATION = exudyn.ConfigurationType.Current  # the engine's name fo
 def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """Return the equilibrium near `start` as the ground plate accelerates, or None; `start` itself without rotation."""
+    """
+    Return the equilibrium near `start` under the weight and the initial acceleration of the ground plate, (3,).
+
+    It is None if none is found, and `start` itself if no body rotates. penetration: of the contacts by the weight.
+    """
     if model.kinematics is None:
         return start
     static_penetration = model.bearing_penetration or penetration
@@ -115,6 +119,9 @@ class _EquilibriumSolver:
 
     def solve_under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
         """Solve for the coordinates (n,) at which stiff links and closed contacts (K,) balance the loading at rest."""
+        # Only stiff parts may deform: the coordinates move along M^-1 B^T, the response to forces on these parts, where
+        # B maps velocities to rates of deformation. All slower motions, which deform no closed contact and no stiff
+        # link, stay in place, held by inertia forces M v along each of them.
         mass = self._compute_mass_matrix(equilibrium)
         stiff = self.kinematics.stiff_deformation_rates(equilibrium, np.ones_like(closed))
         spheres = self._size - stiff.shape[1]
@@ -128,7 +135,12 @@ class _EquilibriumSolver:
         return [0, 1, 5] if self.model.rim == math.inf else []
 
     def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """Find coordinates in balance, moved from `begin` along `moved` (n, s), with reactions along `held` (n, t)."""
+        """
+        Find the coordinates (n,) in balance, from `begin` on; None if Newton's method finds none.
+
+        moved: directions, as columns (n, s), in which the coordinates may move. held: directions, as columns (n, t), in
+        which reactions act. closed: mask (K,) of closed contacts. loading: share of the initial loading that acts.
+        """
         # Newton's method is applied to the engine's own forces and their Jacobian. The unknowns are displacements along
         # `moved` and forces along `held`, which hold the slow motions in place. A contact that would have to pull
         # counts as open: it carries no force, and its gap is set to zero instead. The matrix may be singular where
@@ -172,7 +184,7 @@ class _EquilibriumSolver:
         self._solver.ComputeODE2RHS(mbs)
         forces = np.array(self._solver.GetSystemResidual())
         self._solver.ComputeJacobianODE2RHS(mbs, 1.0, 0.0, 0.0)
-        already_loads = 1.0
+        already_loads = 1.0  # share of the initial loading that the engine's forces contain
         return forces - (loading - already_loads) * shaken, np.array(self._solver.GetSystemJacobian())
 
     def _set_coordinates(self, coordinates: Array) -> None:

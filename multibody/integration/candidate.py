@@ -36,7 +36,8 @@ class Candidate:
     - compliance: Errors that the contact's compliance leaves where `shares_contact`; None until a run has shown them,
       (N,).
     - coarser: Other runs, each with the share of its difference to this run that is an error.
-    - confirmed: Whether the runs that confirm the answer ended: on springs of real bearings, after level 0.
+    - confirmed: False if the run on springs of real bearings, which must confirm the peaks, did not end, or if there
+      were impacts and the level before is the extra coarse one before level 0.
     - floor: Lower bound of the relative error of any number of the run.
     """
 

@@ -44,7 +44,12 @@ def smallest_loaded_slip(contact: Array, row: int) -> float:
 def slip_change_ratios(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
-    """Return the ratio (T,) of the slowest loaded contact's change of slip velocity in a step to the allowed change."""
+    """
+    Return the ratio (T,) of the change of slip velocity in each step to the allowed change, at the slowest contact.
+
+    platform: index of the platform's coordinates, (3,). per_change: step divided by the allowed relative change.
+    corner: slip speed that counts for slower contacts.
+    """
     step_ratio = np.empty(len(accelerations))
     before_x = before_y = before_z = 0.0
     for row in range(len(accelerations)):
@@ -95,6 +100,7 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
         square, rate = x * x + y * y, x * velocities[row, axes[0]] + y * velocities[row, axes[1]]
         largest = max(largest, square)
         if row > 0 and before > 0.0 > rate:
+            # half the derivative of the square falls linearly from `before` to `rate`, through zero at the maximum
             rise = before * before / (before - rate) * (time[row] - time[row - 1])
             largest = max(largest, before_square + rise)
         before_square, before = square, rate

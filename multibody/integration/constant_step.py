@@ -96,9 +96,13 @@ class EngineMotion(NamedTuple):
             span = self.time[row] - self.time[row - 1]
             rates = [None if each is None else (each[1] - each[0]) / span for each in (slip, load)]
         return EngineState(
-            self.coordinates[row], self.velocities[row], self.contact[row], rates[0],
-            None if load is None else load[-1], rates[1],
-        )  # fmt: skip
+            coordinates=self.coordinates[row],
+            velocities=self.velocities[row],
+            contact=self.contact[row],
+            slip_rate=rates[0],
+            load=None if load is None else load[-1],
+            load_rate=rates[1],
+        )
 
 
 @contextmanager

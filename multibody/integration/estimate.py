@@ -1,10 +1,11 @@
 """
 Error estimates of a run's peaks, from runs at coarser levels or on a softer contact.
 
-Peaks in smooth motion converge by a factor of four from level to level. Those at stops converge by two to four. Where
-the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
-of the coarser level. A difference that is smaller than convergence by four explains is accidental: errors cancel. It
-does not count. Two changes of opposite sign show no rate.
+A level of accuracy is a choice of step, contact stiffness and tolerances (`level`). Peaks in smooth motion converge by
+a factor of four from level to level. Those at stops converge by two to four. Where the contact is slower than friction
+relaxes, a level removes at most 1 / (2 + x) of the error, where x is the `contact_lag` of the coarser level. A
+difference that is smaller than convergence by four explains is accidental: errors cancel. It does not count. Two
+changes of opposite sign show no rate.
 
 References
 ----------
@@ -123,6 +124,8 @@ def rounding_error(
     peaks: PeakReader, level: Level, other: PeakReader, softer: Level, safety: float = SAFETY_TWO_LEVELS
 ) -> Array:
     """Return the error (N,) by rounding of contact forces, from the difference to a run on a softer contact."""
+    # Rounding of the force is in inverse proportion to the penetration. If the other contact is softer by a factor q,
+    # it has 1 / q of the error, so that the peaks differ by (1 - 1 / q) times the error.
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
         return np.full_like(peaks.value, level.rounding)
@@ -146,10 +149,12 @@ def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: Engin
         return np.where(peaks <= noise, noise, 0.0)
     noise = FORCE_NOISE_RATIO * level.rounding
     vertical = peaks if model.ground.accelerates(2) else np.minimum(run.max_vertical, peaks)
+    # Noise n on a vertical component v adds `gain` = (v + n)^2 - v^2 to the square of the peak p, and so to the peak
+    # p - sqrt(p^2 - gain), which is written without a difference of nearly equal numbers.
     gain = (2.0 * vertical + noise) * noise
     error = np.minimum(noise, gain / np.maximum(peaks + np.sqrt(np.maximum(peaks**2 - gain, 0.0)), SMALLEST_CHANGE))
     if scene.flat:
-        left = level.residual / shares[0]
+        left = level.residual / shares[0]  # acceleration of the platform by a force as large as the residual
         error[0] += left * min(1.0, MAX_FORCE_WITHOUT_ITERATION * left / max(peaks[0], SMALLEST_CHANGE))
     return error
 
@@ -160,7 +165,12 @@ def impact_error_floor(before: int) -> float:
 
 
 def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
-    """Return errors (N,), raised after impacts to a share of the peaks, and to a peak's range where levels scatter."""
+    """
+    Return errors (N,) that are enlarged if the run had impacts, behind which levels may agree by chance.
+
+    They are at least a share of the peaks and, where levels scatter, at least the range of the peak over the levels.
+    before: number of coarser levels on equally stiff supports.
+    """
     if not run.impacts:
         return errors
     widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
@@ -168,7 +178,7 @@ def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, bef
         return widened
     values = np.array([each.value for each in peaks])
     earlier, change = np.diff(values, axis=0)
-    scattered = earlier * change < MIN_RATE * change**2
+    scattered = earlier * change < MIN_RATE * change**2  # opposite sign, or smaller by less than convergence makes it
     return np.where(scattered, np.maximum(widened, np.ptp(values, axis=0)), widened)
 
 

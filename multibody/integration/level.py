@@ -308,7 +308,12 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
 def _bound_penetration(
     model: EngineModel, tolerance: float, strength: float, period: float, slowest: float
 ) -> tuple[float, float]:
-    """Return penetrations, model units, of softest and stiffest usable contact; slowest: bound on its response time."""
+    """
+    Return the penetrations under the weight, in units of length, of the softest and of the stiffest contact to be used.
+
+    strength: as in `Level`. period: shortest period of the motion. slowest: longest response time of the contact, which
+    is the square root of its penetration.
+    """
     # A softer contact than the softest would lag behind friction at a stop, take part in the motion of stiff links, or
     # not settle under a force before the end. In a stiffer contact than the stiffest the rounding error of a position,
     # over the penetration, would be an error of the force above a share of the tolerance. Under a weak loading that
@@ -343,6 +348,8 @@ def bound_contact_force_change(scene: Scene, model: EngineModel) -> float:
     """Return a bound, in weights, on the change of contact force in a motion from rest; inf with vertical loading."""
     if model.ground.accelerates(2):
         return math.inf
+    # From rest no body is faster than `speed`, the largest acceleration of two harmonics along two axes times the
+    # duration. On the sphere the contact force then changes by v^2, centripetal, and by at most v^2 / 2 on the slope.
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
     return 1.5 * speed**2
 

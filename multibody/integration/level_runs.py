@@ -50,7 +50,8 @@ UNFINISHED_OUTCOMES = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
 # Largest error by the warping load (part without resultant of closed supports' forces), as a share of the tolerance
 MAX_WARPING_ERROR_SHARE = 0.2
 
-# Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle.
+# Largest share of the engine steps allowed for a phase pair that the first run may take if supports may rattle, that is
+# open and close again and again.
 MAX_WORK_SHARE_OF_TRIAL = 0.2
 
 # Largest ratio of the numbers of steps of two successive levels, to predict the work: steps become half as long.
@@ -245,7 +246,11 @@ class LevelRuns:
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """Repeat the last level on supports as stiff as real bearings; return change (N,) of peaks, and if it ended."""
+        """
+        Repeat the last level on supports as stiff as real bearings.
+
+        Returns the changes (N,) of the peaks, at least those of an `earlier` level, and whether the run ended.
+        """
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._run_on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED_OUTCOMES:
@@ -265,7 +270,7 @@ class LevelRuns:
         self.stop, self.real_bearings_run = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Soften later levels: supports for forces without resultant (warping) in `run`, contacts for small peaks."""
+        """Soften the supports of later levels as the warping load of `run` requires, and contacts for small peaks."""
         done = len(self.runs)
         if run.lifts_off:
             self.max_warping_compliance = PHYSICAL_WARPING_COMPLIANCE
@@ -286,7 +291,11 @@ def _with_physical_warping_compliance(level: Level) -> Level:
 
 
 def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """Return `level` with supports as soft, up to `softest`, as forces without resultant (warping) in `run` require."""
+    """
+    Return `level` with supports that give way to warping as far as the warping load of `run` requires.
+
+    Warping load is the part of the support forces that has no resultant. softest: largest compliance against warping.
+    """
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)

@@ -35,7 +35,11 @@ QUIET_TIME_BEFORE_SCAN = 2.0 * math.pi
 
 
 def can_look_ahead(model: EngineModel, level: Level) -> bool:
-    """Return whether searching later motion in larger steps is possible and saves work: no heat, no dense record."""
+    """
+    Return whether later motion can be searched in larger steps, and the search saves work.
+
+    It cannot where friction depends on heat, and saves nothing where samples of a record are closer than two steps.
+    """
     return (
         not (model.friction is not None and model.friction.law.heat)
         and float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
@@ -43,7 +47,11 @@ def can_look_ahead(model: EngineModel, level: Level) -> bool:
 
 
 def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
-    """Return the level of a run's longest steps: of its search for late peaks, or `level` if `whole` or no search."""
+    """
+    Return the level with the longest steps that a run at `level` takes: those of its search for late peaks, if any.
+
+    whole: whether the run takes accurate steps to the end of the motion, without such a search.
+    """
     return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 

@@ -54,7 +54,12 @@ class PhasePair:
     def run_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
     ) -> EngineRun:
-        """Run the model at a level of accuracy, up to `stop` or, unless `keep`, until no large value can come."""
+        """
+        Run the model at a level of accuracy, up to `stop` or, unless `keep`, until no large value can come.
+
+        keep: whether the run keeps its motion. residual: absolute tolerance of the forces, in weights; None takes that
+        of the level.
+        """
         solver = EngineSolver(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         if self.model.springs is not None:
@@ -76,7 +81,7 @@ class PhasePair:
         integrator: str,
         discontinuous: float | None,
     ) -> EngineRun:
-        """Run the model in `count` equal steps without error control, and keep the motion."""
+        """Run the model in `count` equal steps and keep the motion; the other arguments are those of `single_run`."""
         model, solver = self.model, EngineSolver(self.model, newton, residual, integrator, discontinuous)
         model.set_contact(penetration)
         start = self._find_start(penetration)

@@ -57,7 +57,11 @@ FIRST_STEP_OVER_RESPONSE = 0.25
 
 @dataclass(frozen=True)
 class Event:
-    """First opening or closing of contacts in a chunk: last row before it, mask (K,) of the contacts that change."""
+    """
+    First opening or closing of contacts in a chunk of a motion.
+
+    row: the last row before it. closes: whether contacts close, rather than open. contacts: mask (K,) of those that do.
+    """
 
     row: int
     closes: bool
@@ -140,6 +144,7 @@ class Openings:
             if length not in values:
                 done[length] = motion = self.solver.run(state, time, length, 1)
                 gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.contacts]
+                # a step that the engine cannot solve counts as one beyond the event
                 values[length] = -self.penetration if gaps is None else float((sign * gaps).min())
             return values[length]
 

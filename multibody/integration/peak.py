@@ -190,7 +190,8 @@ def _read_parabola_maximum(
     """
     Return the maximum of a parabola through the highest sample and two others, or the sample if slopes jump nearby.
 
-    The result is value, error and instant.
+    row: the highest sample. first, last: first and last sample of the smooth stretch that contains it. others: the two
+    other samples. The result is value, error and instant.
     """
     # A fourth sample shows the error of the parabola: the third divided difference times the cubic that vanishes at the
     # three samples is the error at the maximum. Samples that alternate from step to step are ringing of the integrator
@@ -202,6 +203,7 @@ def _read_parabola_maximum(
     sample = float(size[row]), alternating, float(time[row])
     if not (first <= min(others) and max(others) <= last):
         return sample
+    # parabola: size[row] + slope t + curvature t^2, with the time t from the highest sample
     t = [float(time[other] - time[row]) for other in others]
     left, right = (float(size[other] - size[row]) / apart for other, apart in zip(others, t))
     curvature = (right - left) / (t[1] - t[0])
@@ -222,6 +224,8 @@ def _read_parabola_maximum(
 
 def _alternating_part(time: Array, size: Array) -> float:
     """Return the part of five samples that alternates from step to step; near zero where steps resolve the motion."""
+    # The fourth divided difference of the samples vanishes for a cubic. Divided by the sum of its weights' sizes it is
+    # the amplitude of samples that alternate; if the last step is longer, that of the last sample alone is taken.
     apart = time[:, None] - time
     np.fill_diagonal(apart, 1.0)
     weights = 1.0 / apart.prod(axis=1)
@@ -231,9 +235,10 @@ def _alternating_part(time: Array, size: Array) -> float:
 
 def _error_of_lone_sample(time: Array, size: Array, row: int, corners: list[int]) -> float:
     """
-    Return error of a lone sample between two corners, slip at v_reg: its difference from extrapolated earlier samples.
+    Return the error of a sample that is alone between two instants at which the slip speed passes v_reg (corners).
 
-    The error is zero at the beginning of the motion, and if there are other samples between the corners.
+    It is the difference from the extrapolation of earlier samples. It is zero at the beginning of the motion, and if
+    there are other samples between the corners.
     """
     if row - 1 not in corners or row not in corners:
         return 0.0
@@ -271,10 +276,10 @@ def _read_corner(
         low, high = slip[left, contact], slip[left + 1, contact]
         instants = [ends[0] + (threshold - low) / (high - low) * (ends[1] - ends[0])]
     instant = sum(instants) / len(instants)
-    readings = [_extrapolate(time[side], size[side], instant) for side in (before, after)]
-    slope = max(abs(float(size[left + 1] - size[left])), abs(readings[0] - readings[1])) / (ends[1] - ends[0])
-    error = 0.5 * abs(readings[0] - readings[1]) + 0.5 * (max(instants) - min(instants)) * slope
-    return 0.5 * (readings[0] + readings[1]), error, instant
+    values = [_extrapolate(time[side], size[side], instant) for side in (before, after)]
+    slope = max(abs(float(size[left + 1] - size[left])), abs(values[0] - values[1])) / (ends[1] - ends[0])
+    error = 0.5 * abs(values[0] - values[1]) + 0.5 * (max(instants) - min(instants)) * slope
+    return 0.5 * (values[0] + values[1]), error, instant
 
 
 def _list_smooth_stretches(
@@ -311,6 +316,7 @@ def _extrapolate(time: Array, values: Array, instant: float) -> float:
 
 def _locate_crossing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
     """Return the instant between `ends` at which a slip speed, extrapolated from 2 or 3 samples, is the threshold."""
+    # a line through the two nearest samples gives the instant, and one step with its slope corrects it on the parabola
     near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
     rate = float((slip[near] - slip[far]) / (time[near] - time[far]))
     if rate == 0.0:

@@ -80,7 +80,8 @@ def refine(
     model, budget, whole = pair.model, Budget(max_work), keep or pair.in_full
     planned = plan_levels(pair.scene, model, tolerance) if levels is None else list(levels)
     if not budget.has_work_left_for(pair.end, level_of_longest_steps(model, planned[0], whole)):
-        no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
+        no_peaks = PeakReader(len(model.bodies), model.corner)
+        no_run = EngineRun(peaks=no_peaks, stop=math.inf, outcome=Outcome.STEP_LIMIT, instant=0.0)
         return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     search = _AnswerSearch(LevelRuns(pair, tolerance, budget, planned, may_soften_contact=levels is None, keep=keep))
     while not search.has_ended and search.runs.can_run_next():

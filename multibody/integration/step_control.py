@@ -33,7 +33,8 @@ MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256
 SLIP_CHANGE_PER_SMALL_CHUNK = 4.48
 MIN_SMALL_CHUNK_STEPS, MAX_SMALL_CHUNK_STEPS = 8, 4096  # bounds of the steps in a chunk of small steps
 
-# Largest first step after a loading kink / (relaxation time of friction * allowed slip change, `Level.slip_change`)
+# Largest first step after a kink of the loading, divided by the relaxation time of friction and by the allowed change
+# of the slip velocity (`Level.slip_change`).
 KINK_STEP_RATIO = 4.0
 
 # Step times the rate at which friction that depends on the slip speed changes this speed: at most the first constant
@@ -52,7 +53,12 @@ class StepControl:
     level: Level
 
     def step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, step: float, state: EngineState) -> Array:
-        """Return the ratio (T,) of each step to the allowed one, from accelerations (T, N) and peaks so far (N,)."""
+        """
+        Return the ratio of each step of a motion to the largest one that is allowed there, (T,).
+
+        size: absolute accelerations of the bodies, (T, N). peaks: their largest values so far, (N,). step: length of
+        the steps. state: state from which the motion starts.
+        """
         model, level = self.model, self.level
         per_change = step / level.slip_change
         if model.springs is None:
@@ -110,6 +116,7 @@ class StepControl:
         before, slip = smallest_loaded_slip(motion.contact, -2), smallest_loaded_slip(motion.contact, -1)
         if not math.isfinite(before + slip):
             return MAX_CHUNK_STEPS
+        # the slip speed is extrapolated linearly to the speed at which the largest step is no longer allowed
         rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
         target = corner
         if slip > corner:

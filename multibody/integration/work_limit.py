@@ -75,6 +75,7 @@ def refusal(
         return ""
     first_step, step = (level.step * built.units.time for level in (first, longest))
     needed, work = scene.duration / step, WORK_PER_MOTION_OVER_COARSEST_RUN * scene.duration / first_step
+    # the extra coarse level before level 0, if there is one, has steps twice as long as those of level 0
     period = STEPS_PER_PERIOD * first_step / (1 + first.precedes_level_0)
     looser_helps = scene.recorded and not first.precedes_level_0
     tried, enough = max_work * step, max_work * first_step / WORK_PER_MOTION_OVER_COARSEST_RUN

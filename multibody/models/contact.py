@@ -1,4 +1,8 @@
-"""Contact of every model: corner of the friction law, initial position on the surface, restart with settled force."""
+"""
+Contact of the platform in every model: its friction law, and the states from which a run starts or continues.
+
+The friction law has a corner at v_reg: friction is linear in the slip speed below it, and constant above.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +23,8 @@ Array = NDArray[np.float64]
 # Damping ratio of the contact: at 1 its vibration along the normal dies out within a few of its periods.
 DAMPING_RATIO = 1.0
 
-# Rounding error of a position, in model units; divided by the contact's penetration it is that of its force, in weights
+# Rounding error of a position, in units of length. Divided by the contact's penetration under the weight, it is the
+# rounding error of the contact force, in weights.
 POSITION_ROUNDING = 1e-15
 
 # Slip speed, in units of velocity, up to which the friction coefficient of a lubricated contact grows linearly with
@@ -59,15 +64,24 @@ def set_contact_parameters(
     damping_ratio: float = DAMPING_RATIO,
 ) -> None:
     """
-    Set radii (of sphere and depression, or of a sphere on a plane), stiffness and damping of one of `count` contacts.
+    Set stiffness and damping of one of `count` contacts that share the weight, in units of the model.
+
+    radii: radii of sphere and depression, or the radius of a sphere on a plane. penetration: by the weight, the inverse
+    of the stiffness of all contacts together.
     """
     mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
+    # the total mass, 1, on the stiffness k = 1 / penetration is damped critically by 2 sqrt(k)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
     mbs.SetObjectParameter(contact, "contactDamping", 2.0 * damping_ratio / (count * np.sqrt(penetration)))
 
 
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
-    """Return the slip speed below which friction is linear, and the relaxation time there; inf if there is none."""
+    """
+    Return the slip speed at the corner of the friction law, and the relaxation time of a slower slip.
+
+    Both are in units of the model, and inf if the law has no corner. The relaxation time is m1 v_reg / (mu m_sum g)
+    with the platform's mass m1, the friction coefficient mu and the total mass m_sum.
+    """
     friction, threshold = contact_law(scene, regularization, units)
     if scene.lubricated or friction == 0.0 or scene.dry_friction.elastic:
         return math.inf, math.inf
@@ -97,6 +111,7 @@ def place_on_sphere(
     height = float(np.sqrt(max(1.0 - float(offset @ offset), 0.0)))
     normal = np.array([-offset[0], -offset[1], height])
     vertical = float(offset @ speed) / height if height > 0.0 else np.inf
+    # the contact carries the weight, the inertia of the mass in the accelerated frame, and the centripetal force
     slip = float(np.sqrt(speed @ speed + vertical**2))
     pressed = penetration * float(normal @ ground + normal[2] + slip**2)
     place = np.array([0.0, 0.0, 1.0]) - normal * (1.0 + pressed - penetration)
@@ -109,10 +124,13 @@ def settle_contact(state: EngineState, gap_rate: float, penetration: float, norm
 
     At a step h the engine's position and velocity disagree along the normal by O(h^2). The contact's damper makes a
     force of that, which a change of the gap balances. With a smaller step the balance would be lost and the force ring.
+
+    gap_rate: rate at which the gap grows. normal: unit normal of the contact, (3,).
     """
     coordinates, velocities, contact = state.coordinates.copy(), state.velocities.copy(), state.contact.copy()
     damping = 2.0 * DAMPING_RATIO / math.sqrt(penetration)
     excess_speed = sum(share * speed for share, speed in zip(normal, velocities[:3].tolist())) - gap_rate
+    # a change of the position along the normal makes the contact's spring exert the force that its damper exerted
     rise = -penetration * damping * excess_speed
     for axis, share in enumerate(normal):
         velocities[axis] -= share * excess_speed

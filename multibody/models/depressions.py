@@ -22,7 +22,8 @@ class Depressions:
     Geometry of the platform's depressions over spheres on the plate, in units of the model: pendulum length rho = 1.
 
     ring: places of the spheres, (K, 2). center: the platform's center of mass at rest, from the middle of the plane of
-    the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,) or (0,).
+    the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,); empty
+    where the spheres are fixed to the plate.
     """
 
     ring: Array
@@ -31,7 +32,11 @@ class Depressions:
     vertical: NDArray[np.int_]
 
     def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return positions (T, K, 3) of spheres from depression centers: in axes of the plate, and of the platform."""
+        """
+        Return the vectors (T, K, 3) from the centers of the depressions to those of the spheres.
+
+        The first array has them in the axes of the plate, the second in those of the platform.
+        """
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -72,7 +77,11 @@ class Depressions:
         return np.asarray(outside.any(axis=1))
 
     def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
-        """Return contact normals (K, 3) and Jacobians (K, 3, 6) from platform velocities to those of contact points."""
+        """
+        Return the normals (K, 3) of the contacts, and the Jacobians (K, 3, 6) of the platform's contact points.
+
+        A Jacobian maps velocity and angular velocity of the platform, (6,), to the velocity of a contact point on it.
+        """
         normals = self._platform_normals(coordinates)
         levers = self._sphere_centers(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)

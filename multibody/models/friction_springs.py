@@ -40,9 +40,9 @@ CENTER_MASS, CENTER_STIFFNESS = 1e8, 1e10
 # Ratio of the friction coefficient of a contact at rest to the scene's: it creeps at v_reg divided by this ratio.
 RESTING_COEFFICIENT_RATIO = 1e6
 
-# Slip speed at which a slide ends at accuracy level 0, as a multiple of sqrt(mu g u_y), with friction coefficient mu
-# and yield displacement u_y: in short steps noise of the contact force makes as much slip. What is left of the slide
-# stretches the spring beyond its limit, and this does not count as yield.
+# Slip speed at which a slide ends at level 0, the coarsest level of accuracy, as a multiple of sqrt(mu g u_y), with
+# friction coefficient mu and yield displacement u_y. In short steps the noise of the contact force makes as much slip.
+# What is left of the slide stretches the spring beyond its limit, and this does not count as yield.
 SLIDE_END_SPEED_RATIO = 0.1
 
 # Largest elongation beyond a spring's limit, over yield displacement, at which a contact rests at accuracy level 0.
@@ -62,8 +62,9 @@ class ContactChange(NamedTuple):
     """
     Start or end of a contact's slide, in the step after a motion's `row`, at the share `step_share` of that step.
 
-    slides: whether the contact begins to slide. limits: elastic displacements (K,) at which contacts slide there, to
-    which springs at rest are shortened and the spring that begins to slide is set; None where a slide ends.
+    slides: whether the contact begins to slide. limits: elastic displacements (K,) at which contacts slide there; None
+    where a slide ends. The spring of the contact that begins to slide is set to its limit, and longer springs of
+    contacts at rest are shortened to theirs.
     """
 
     row: int
@@ -79,8 +80,8 @@ class FrictionSprings:
     Torsion springs on the spheres, in units of the model: they yield elastically before a contact slides.
 
     turns: index of the rotations of each sphere, (K, 3). law: friction law of the contacts. displacement: elastic
-    displacement at which they slide under the weight. slide_end: slip speed at which slides end at level 0. Arguments
-    `motion` are of the type `EngineMotion`.
+    displacement at which they slide under the weight. slide_end: slip speed at which slides end at level 0, the
+    coarsest level of accuracy. Arguments `motion` are of the type `EngineMotion`.
     """
 
     mbs: Any
@@ -97,7 +98,7 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
 
     def coefficient_ratios(self, state: EngineState) -> list[float]:
-        """Return contact friction coefficients / the scene's, (K,): 1 in a slide; at rest large, so that they stick."""
+        """Return the ratio of each contact's friction coefficient to the scene's: 1 in a slide, much larger at rest."""
         return [1.0 if slides else RESTING_COEFFICIENT_RATIO for slides in self._mark_sliding(state)]
 
     def set_slide_end(self, end: float) -> None:
@@ -106,7 +107,13 @@ class FrictionSprings:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", V_REG_OVER_SLIDE_END * end)
 
     def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
-        """Return each step's relative change (T,): of springs or, if larger, of velocity over slip speed, weighted."""
+        """
+        Return the change of the state in each step, (T,), in proportion to the change that alters friction.
+
+        It is the larger of two ratios: the largest change of a spring's elongation over the elongation at which
+        contacts slide under the weight, and (weighted) the change of the platform's velocity over the slip speed.
+        end: slip speed at which slides end.
+        """
         turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
         slip = np.maximum(motion.slip[1:], end)[:, self._mark_sliding(state)].min(axis=1, initial=math.inf)
         turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip
@@ -114,25 +121,31 @@ class FrictionSprings:
         return np.append(0.0, changes)
 
     def find_sliding_change(self, motion: Any, state: EngineState, end: float, begin: float) -> ContactChange | None:
-        """Find the first contact that begins or ends a slide after `state`, or None; end: slip speed that ends it."""
+        """
+        Find the first contact that begins or ends a slide in a motion that starts from `state`; None if there is none.
+
+        end: slip speed at which a slide ends. begin: speed with which a spring must pass its limit to begin a slide.
+        """
         if len(motion.time) < 2:
             return None
         time, slip, limit = motion.time, motion.slip, self.limits(motion)
         excess = self.depressions.radius * np.linalg.norm(motion.coordinates[:, self.turns], axis=2) - limit
-        left = NEGLIGIBLE_EXCESS * self.displacement * (end / self.slide_end) ** 2
+        negligible = NEGLIGIBLE_EXCESS * self.displacement * (end / self.slide_end) ** 2
         changes = []
         for number, slides in enumerate(self._mark_sliding(state)):
             if slides:
                 changes.append(_find_slide_end(number, slip[:, number] / end))
                 continue
-            change = _find_slide_start(number, excess[:, number] / left)
+            change = _find_slide_start(number, excess[:, number] / negligible)
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
                 if speed > begin:
                     change = change._replace(limits=limit[row])
-                else:
-                    change = ContactChange(row + 1, number, 0.0, False, limit[row + 1])
+                else:  # too slow for a slide: the contact stays at rest, and its spring is shortened to the limit
+                    change = ContactChange(
+                        row=row + 1, contact=number, step_share=0.0, slides=False, limits=limit[row + 1]
+                    )
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
@@ -156,9 +169,12 @@ class FrictionSprings:
         Return `state` with corrected velocities of the spheres, so that the next step can start from it.
 
         The velocities of the spheres follow from rest or slip of their contacts, because those that the engine computes
-        for massless spheres alternate after every kink. change: begin or end of a slide at this instant. before: state
-        that tells which contacts slide. accelerations: (n,). rates_of_limits: rates of change of `limits`, (K,).
+        for massless spheres alternate after every kink. before: state that tells which contacts slide. accelerations:
+        of all coordinates, (n,). rates_of_limits: rates of change of `limits`, (K,). end: slip speed at which a slide
+        ends. change: begin or end of a slide at this instant.
         """
+        # A contact at rest turns its sphere with the platform's surface. A contact that slides keeps its spring at the
+        # limit, which changes at a known rate, and the rest of the surface's velocity is slip along the spring's force.
         sliding = np.array(self._mark_sliding(before))
         if change is not None and change.limits is not None:
             coordinates = state.coordinates.copy()
@@ -211,34 +227,37 @@ def _find_slide_start(contact: int, excess: Array) -> ContactChange | None:
     if not len(rows):
         return None
     before, after = excess[rows[0] : rows[0] + 2].tolist()
-    return ContactChange(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
+    step_share = max(-before, 0.0) / (after - min(before, 0.0))
+    return ContactChange(row=int(rows[0]), contact=contact, step_share=step_share, slides=True)
 
 
 def _find_slide_end(contact: int, slip: Array) -> ContactChange | None:
     """Find the step in which an extrapolated slip speed comes to zero; slip: (T,), over the speed that ends a slide."""
+    # a speed that is halved in a step comes to zero in the next one, if it falls on along a straight line
     rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
     if not len(rows):
         return None
     before, after = slip[rows[0] : rows[0] + 2].tolist()
-    return ContactChange(int(rows[0]) + 1, contact, min(after / (before - after), 1.0), slides=False)
+    step_share = min(after / (before - after), 1.0)
+    return ContactChange(row=int(rows[0]) + 1, contact=contact, step_share=step_share, slides=False)
 
 
 def make_friction_springs(
     mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
 ) -> FrictionSprings | None:
-    """Return the torsion springs of `contacts`, None if friction is rigid; first: index of their first coordinate."""
+    """Return the torsion springs of `contacts`, None if friction is rigid; first: the spheres' first coordinate."""
     if not scene.dry_friction.elastic:
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)
     law = scene.dry_friction.in_unit_of_speed(units.velocity)
     return FrictionSprings(
-        mbs,
-        contacts,
-        turns,
-        depressions,
-        law,
-        scene.yield_displacement / units.length,
-        slide_end_speed(scene, units),
+        mbs=mbs,
+        contacts=contacts,
+        turns=turns,
+        depressions=depressions,
+        law=law,
+        displacement=scene.yield_displacement / units.length,
+        slide_end=slide_end_speed(scene, units),
     )
 
 
@@ -249,7 +268,12 @@ def slide_end_speed(scene: Scene, units: Units) -> float:
 
 @dataclass(frozen=True)
 class TurningSpheres:
-    """Spheres that rotate on springs: markers, one engine object for all, stiffness and damping matrices (n, n)."""
+    """
+    Spheres that rotate on springs, in the engine.
+
+    markers: at the centers of the spheres. bodies: the one object of all spheres; empty where there are none.
+    stiffness, damping: matrices (n, n) for the n coordinates of the spheres.
+    """
 
     markers: list[Any]
     bodies: list[Any]
@@ -266,12 +290,13 @@ def add_turning_spheres(
     mbs: Any, scene: Scene, units: Units, places: Array, radius: float, moved: float = 0.0
 ) -> TurningSpheres:
     """
-    Add spheres that rotate on springs, none if friction is rigid; moved: their total mass if they also move vertically.
+    Add spheres of a `radius` that rotate on springs, in units of the model; add none if friction is rigid.
 
-    places: (K, 2), at height one in units of length. moved: 0 if spheres cannot rise; else the weight presses them up.
+    places: horizontal places (K, 2) of their centers, at height one. moved: 0 if their centers stay in place; otherwise
+    they also move vertically, with this total mass, and a force equal to the weight presses them up.
     """
     if not scene.dry_friction.elastic:
-        return TurningSpheres([], [], np.zeros((0, 0)), np.zeros((0, 0)))
+        return TurningSpheres(markers=[], bodies=[], stiffness=np.zeros((0, 0)), damping=np.zeros((0, 0)))
     count = len(places)
     rest = [[*place, 1.0, 0.0, 0.0, 0.0] for place in places]
     nodes = [mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=place)) for place in rest]

@@ -65,7 +65,11 @@ class ImpactLaw:
     rigid: Mask
 
     def solve_impact(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Return velocities (n,) and open contacts (K,) after contacts `hit` collide; closed: others that touch."""
+        """
+        Return the velocities (n,) after an impact, and the mask (K,) of the contacts that are open then.
+
+        hit: mask of the contacts that collide. closed: mask of the others that touch, which may push in the impact.
+        """
         # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix with
         # rigid links as constraints (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by
         # Newton's restitution, and closed contacts may push without rebounding. Friction and unilateral contact hold
@@ -130,7 +134,11 @@ class ImpactLaw:
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
-        """Return two speeds (K,) at which the platform leaves spheres: if these cannot rise, and if they are free."""
+        """
+        Return two speeds at which the platform leaves each sphere along the contact normal, both (K,).
+
+        The second is relative to the sphere. For the first, a sphere that moves up counts as standing still.
+        """
         platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
             PLATFORM_SLICE
         ]
@@ -154,7 +162,11 @@ class ImpactLaw:
         return rates
 
     def stiff_deformation_rates(self, coordinates: Array, closed: Mask) -> Array:
-        """Return the matrix (s, 6 N) from velocities to heave and tilt of closed contacts and strain of rigid links."""
+        """
+        Return the matrix (s, 6 N) from velocities of the bodies to rates at which stiff parts deform.
+
+        Its rows are heave and tilt of the closed contacts, then stretching and bending of the rigid links.
+        """
         count = BODY_COORDINATES * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
@@ -189,7 +201,11 @@ class ImpactLaw:
         return response
 
     def _bar_rates(self, coordinates: Array, turned: Array) -> Array:
-        """Return the matrix from velocities of bodies to stretching and bending of rigid links, three rows for each."""
+        """
+        Return the matrix (3 L, 6 N) from velocities of bodies to rates of stretching and bending of L rigid links.
+
+        turned: rotation matrices of the bodies, (N, 3, 3).
+        """
         count = len(self.masses)
         rows = np.zeros((3 * (count - 1), BODY_COORDINATES * count))
         places = coordinates[: BODY_COORDINATES * count].reshape(-1, BODY_COORDINATES)[:, :3].copy()
@@ -211,13 +227,22 @@ class ImpactLaw:
         return rows[np.repeat(self.rigid, 3)]
 
     def _levers_to_link_ends(self, link: int, turned: Array) -> tuple[Array, Array]:
-        """Return the vectors (3,) from the centers of two bodies, turned by (N, 3, 3), to the ends of their link."""
+        """
+        Return the two vectors (3,) from the centers of neighboring bodies to the ends of their link.
+
+        turned: rotation matrices of the bodies, (N, 3, 3).
+        """
         below, above = self.centers[link : link + 2]
         half = 0.5 * (above[2] - below[2])
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """Solve for contact impulses (K, 3), normal and tangential; rebound: least normal speed (K,) after impact."""
+        """
+        Solve for the impulses (K, 3) of the contacts, one normal and two tangential components for each.
+
+        delassus: matrix (3 K, 3 K) from impulses to changes of the contacts' velocities. before: these velocities, (K,
+        3), before the impact. rebound: smallest normal speed of each contact after it, (K,).
+        """
         # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that satisfies its own
         # law while all other impulses stay fixed. In the tangent plane the block of the contact is replaced by its
         # largest eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not

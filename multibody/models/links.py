@@ -1,9 +1,9 @@
 """
 Links of the spatial model: upright bars clamped at both ends, as connectors of the engine halfway up.
 
-A link is stiff in tension and in bending about the horizontal axes, ten times less than the contacts. Bars with an
-`axial_stiffness` give way in both as the beams that they are, and the stiffness of the link is part of the model. Its
-dampers are then proportional to the stiffness in every direction. Where bars shorten as they sway, an upright rod
+A link is stiff in tension and in bending about the horizontal axes, with a tenth of the contacts' stiffness. Bars with
+an `axial_stiffness` give way in both as the beams that they are, and the stiffness of the link is part of the model.
+Its dampers are then proportional to the stiffness in every direction. Where bars shorten as they sway, an upright rod
 holds the bodies apart in place of the connector's tension: a body on it sinks by u^2 / (2 L). Its force leans with it,
 by which the weight that the rod carries at each instant makes the link softer.
 
@@ -178,7 +178,11 @@ def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, be
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """Set a link's stiffness: `shear` (2, 2), `twist`, `stiff` for axis and tilt; carried: mass m above, m x, m y."""
+    """
+    Set the stiffness of a link in units of the model: `shear` (2, 2), `twist`, and `stiff` in tension and bending.
+
+    carried: mass above the link, and that mass times x and y of its center, (3,).
+    """
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
@@ -224,6 +228,8 @@ def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, cent
     """Return the largest angular frequency of the bodies on elastic bars alone; 0 without elastic bars."""
     if all(link.bars is None for link in links):
         return 0.0
+    # `apart` maps the coordinates of all bodies to the six displacements and rotations of a link's upper end against
+    # its lower end, so that the stiffness matrix is a sum over the links. Its fastest mode has the largest eigenvalue.
     size = BODY_COORDINATES * len(masses)
     inertia, stiffness = np.zeros((2, size, size))
     for body, (mass, tensor) in enumerate(zip(masses, tensors)):

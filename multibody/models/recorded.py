@@ -73,7 +73,11 @@ class RecordedGround:
 
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
-    """Return length and number of steps from `time`, at most `step` and `count`, where a step ends at each sample."""
+    """
+    Return length and number of the steps from `time`, at most `step` and `count`, so that a step ends at each sample.
+
+    knots: instants of the samples. near: distance in time within which an instant counts as that of a sample.
+    """
     # The time to the next knot is divided into equal steps. Further intervals of the same length can have the same
     # step in the same call of the engine; an interval of another length ends the chunk.
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0

@@ -15,7 +15,12 @@ def add_recorders(
     contact_nodes: list[Any],
     contacts: list[Any],
 ) -> Recorders:
-    """Add sensors: motion of nodes and `linear` (objects of linear equations); gap, slip, force, normal of contacts."""
+    """
+    Add the sensors that record a run, and return them.
+
+    The motion is recorded of `nodes` and of `linear`, objects with linear equations. Gap and slip speed are recorded of
+    `contact_nodes`, the data nodes of all contacts. Force and normal are recorded of `contacts`.
+    """
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:

@@ -94,7 +94,17 @@ def assemble_spatial(scene: Scene, regularization: float | None, *, contact_forc
     index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, engine_law.threshold, contacts, ground)
-    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, geometry.radius, bearing_penetration)
+    parts = _SpatialSystem(
+        scene=scene,
+        mbs=mbs,
+        units=units,
+        index=index,
+        contacts=contacts,
+        links=links,
+        supports=supports,
+        radius=geometry.radius,
+        bearing_penetration=bearing_penetration,
+    )
     vertical = parts.body_coordinates + supports.vertical
     underside = FlatUnderside if scene.flat else Depressions
     under_platform = underside(geometry.places, centers[0], geometry.radius, vertical)
@@ -188,7 +198,15 @@ def _measure_geometry(scene: Scene, units: Units) -> _Geometry:
         height_of_plane = 1.0 + radius
         centers[:, 2] += height_of_plane
     axes = rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
-    return _Geometry(places, distances, radius, masses, centers, inertias, axes)
+    return _Geometry(
+        places=places,
+        distances=distances,
+        radius=radius,
+        masses=masses,
+        centers=centers,
+        inertias=inertias,
+        axes=axes,
+    )
 
 
 def _add_boxes(mbs: Any, geometry: _Geometry) -> tuple[list[Any], list[Any]]:
@@ -213,7 +231,11 @@ def _add_links(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, number
 
 
 def _add_supports(mbs: Any, scene: Scene, units: Units, geometry: _Geometry, shared: bool) -> Supports:
-    """Add the supports' spheres: fixed, on springs that share load, or on torsion springs, elastic until sliding."""
+    """
+    Add the spheres of the supports; shared: whether they stand on vertical springs, by which they share the load.
+
+    Where friction yields, they also rotate on torsion springs; otherwise they do not rotate.
+    """
     places = geometry.places
     if scene.dry_friction.elastic:
         moved = SPHERES_MASS if shared else 0.0
@@ -229,15 +251,15 @@ def _make_impact_law(
     restitution = scene.isolator.restitution or 0.0
     rigid = np.array([link.bars is None for link in links], dtype=bool)
     return ImpactLaw(
-        under_platform,
-        geometry.masses,
-        geometry.inertias,
-        geometry.axes,
-        geometry.centers,
-        restitution,
-        law,
-        corner,
-        rigid,
+        depressions=under_platform,
+        masses=geometry.masses,
+        inertias=geometry.inertias,
+        axes=geometry.axes,
+        centers=geometry.centers,
+        restitution=restitution,
+        friction=law,
+        corner=corner,
+        rigid=rigid,
     )
 
 
@@ -266,14 +288,23 @@ class _SpatialSystem:
         return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
-        """Set contacts, supports and links for penetration and out-of-plane warping of supports by the weight."""
+        """
+        Set the stiffness of contacts, supports and links.
+
+        penetration: of the contacts under the weight. warping_compliance: displacement of the supports out of a common
+        plane under the weight.
+        """
         self._set_penetration(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
             link.set_stiffness(self.mbs, penetration)
 
     def bar_damping_times(self, penetration: float) -> Array:
-        """Return each link's damping over stiffness in tension, (N - 1,): 0 if elastic, else by contact penetration."""
+        """
+        Return the ratio of damping to stiffness in tension of each link, (N - 1,), in units of time.
+
+        It follows from the penetration of the contacts; for links of elastic bars it is 0.
+        """
         return np.array([link.damping_time(penetration) for link in self.links])
 
     def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
@@ -284,7 +315,11 @@ class _SpatialSystem:
             self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
     def _set_penetration(self, penetration: float) -> None:
-        """Set contact stiffness, damping, radii by stated bearing stiffness, or for a penetration under the weight."""
+        """
+        Set stiffness, damping and radii of the contacts for a `penetration` under the weight.
+
+        If the scene states the stiffness of its bearings, the penetration follows from that instead.
+        """
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
         stated = self.scene.isolator.support_damping
@@ -330,6 +365,7 @@ class _SpatialSystem:
 def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
     """Return the tilt, rad, at which the center of mass is above the nearest edge of the supports."""
     center = masses @ centers / masses.sum()
+    # each row of `equations` is the outward normal of an edge of the supports' outline, and minus its distance
     outward_normals, distances = np.split(ConvexHull(ring).equations, [2], axis=1)
     inside = -float((outward_normals @ center[:2] + distances[:, 0]).max())
     return float(np.arctan2(inside, center[2] - (1.0 + radius)))

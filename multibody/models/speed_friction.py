@@ -42,12 +42,14 @@ class SpeedFriction:
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
+            # friction power, W, of one contact with coefficient 1 under its share of the weight, at slip speed 1
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
         # each contact's coefficient over the law's: above 1 to hold a contact at rest if friction yields on springs
         self.coefficient_ratios = [1.0] * len(contacts)
-        self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
+        self._contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        # state of the contacts at _start of the step up to _end: slip speeds, loads over shares of weight, their rates
+        # Contacts at `_start`, the begin of the step that ends at `_end`: slip speeds, their rates, loads (in shares of
+        # the weight), and the rates of these.
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
         self._load = [1.0] * len(contacts)
         self._start = self._end = 0.0
@@ -55,7 +57,7 @@ class SpeedFriction:
 
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
         """Set slip speeds, normal forces and friction coefficients for a run that starts at `time` from `state`."""
-        nothing = [0.0] * len(self._add_contacts)
+        nothing = [0.0] * len(self._contacts)
         self._slip = self._read_speeds(state.contact, state.velocities)
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
         if self.law.elastic:
@@ -104,17 +106,17 @@ class SpeedFriction:
         return True
 
     def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
-        """Return speeds that set coefficients: slip speeds, or the platform's if friction is elastic before sliding."""
+        """Return the speeds that friction depends on: slip speeds or, where friction yields, the platform's speed."""
         if self.law.elastic:
-            return [math.hypot(*velocities[:3])] * len(self._add_contacts)
+            return [math.hypot(*velocities[:3])] * len(self._contacts)
         speeds: list[float] = contact[SLIP_INDEX::DATA_PER_CONTACT].tolist()
         return speeds
 
     def _read_loads(self, mbs: Any) -> list[float]:
         """Return each contact's normal force, read from the engine, divided by its share of the weight."""
-        kind, count = exudyn.OutputVariableType, len(self._add_contacts)
+        kind, count = exudyn.OutputVariableType, len(self._contacts)
         pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
-                 for each in self._add_contacts]  # fmt: skip
+                 for each in self._contacts]  # fmt: skip
         return [count * abs(float(force @ normal)) for force, normal in pairs]
 
     def _set_coefficients(self, mbs: Any, span: float) -> None:
@@ -125,7 +127,7 @@ class SpeedFriction:
             celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
             self._factor_of_heat = Heat.factor(celsius)
             coefficients = list(self._factor_of_heat * coefficients)
-        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.coefficient_ratios, strict=True):
+        for contact, coefficient, factor in zip(self._contacts, coefficients, self.coefficient_ratios, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", factor * coefficient)
 
     def _coefficients_without_heat(self, span: float) -> list[float]:
@@ -137,15 +139,23 @@ class SpeedFriction:
         ]
 
     def _friction_power(self, cold: list[float], span: float) -> Array:
-        """Return each contact's friction power, W, after the time `span`; cold: coefficients without effect of heat."""
+        """
+        Return the friction power of each contact, (K,), W, after the time `span` from the stored state.
+
+        cold: friction coefficients without the effect of heat.
+        """
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
-        held = np.minimum(speed / self._threshold, 1.0)
-        power: Array = self._watt * (self._factor_of_heat * cold) * pressed * held * speed
+        regularized = np.minimum(speed / self._threshold, 1.0)  # the share of friction that acts below v_reg
+        power: Array = self._watt * (self._factor_of_heat * cold) * pressed * regularized * speed
         return power
 
 
 def _compute_rate_of_length(vector: Array, rates: Array | None) -> float:
-    """Return the rate of the length of a vector (3,) from its rates, the first three of (n,); 0 if these are None."""
+    """
+    Return the rate at which the length of a vector (3,) grows.
+
+    rates: their first three are the rates of its components; None makes the result 0.
+    """
     length = math.hypot(*vector)
     return 0.0 if rates is None or length == 0.0 else float(vector @ rates[:3]) / length

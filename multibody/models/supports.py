@@ -80,8 +80,17 @@ def add_fixed_supports(mbs: Any, ring: Array) -> Supports:
     """Add spheres fixed to the ground at horizontal places (K, 2), centers at height 1 in model units of length."""
     plate = mbs.AddObject(items.ObjectGround())
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate, localPosition=[*place, 1.0])) for place in ring]
+
+    def set_stiffness(penetration: float, warping_compliance: float) -> None:
+        """Do nothing, as fixed spheres have no springs."""
+
     return Supports(
-        markers, [], 0, np.empty(0, np.int_), np.zeros((0, len(ring))), lambda penetration, warping_compliance: None
+        markers=markers,
+        springs=[],
+        coordinates=0,
+        vertical=np.empty(0, np.int_),
+        warping=np.zeros((0, len(ring))),
+        set_stiffness=set_stiffness,
     )
 
 
@@ -109,12 +118,19 @@ def add_sharing_supports(mbs: Any, ring: Array) -> Supports:
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs' stiffness, damping for contact penetration and support warping by weight, in units of length."""
+        """Set the springs for the penetration of the contacts, and the warping of the supports, under the weight."""
         stiffness, damping = _sharing_springs(count, penetration, warping_compliance)
         mbs.SetObjectParameter(springs, "stiffnessMatrix", _combine_tilt_and_warping(warped, *stiffness))
         mbs.SetObjectParameter(springs, "dampingMatrix", _combine_tilt_and_warping(warped, *damping))
 
-    return Supports(markers, [springs], count, np.arange(count), warped, set_stiffness)
+    return Supports(
+        markers=markers,
+        springs=[springs],
+        coordinates=count,
+        vertical=np.arange(count),
+        warping=warped,
+        set_stiffness=set_stiffness,
+    )
 
 
 def _sharing_springs(
@@ -137,7 +153,7 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
     warped = warping_projection(ring) if shared else np.zeros((0, count))
 
     def set_stiffness(penetration: float, warping_compliance: float) -> None:
-        """Set springs' stiffness, damping for contact penetration and support warping by weight, in units of length."""
+        """Set the springs for the penetration of the contacts, and the warping of the supports, under the weight."""
         if not shared:
             return
         block = np.ix_(vertical, vertical)
@@ -150,4 +166,11 @@ def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared
             matrix[block] = _combine_tilt_and_warping(warped, *parts)
             mbs.SetObjectParameter(turning.bodies[0], name, matrix)
 
-    return Supports(turning.markers, turning.bodies, size, vertical, warped, set_stiffness)
+    return Supports(
+        markers=turning.markers,
+        springs=turning.bodies,
+        coordinates=size,
+        vertical=vertical,
+        warping=warped,
+        set_stiffness=set_stiffness,
+    )

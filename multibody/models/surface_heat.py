@@ -48,6 +48,7 @@ class SurfaceHeat:
         """Set up the exponential decays whose sum is the temperature; duration: length of the motion, s."""
         self._initial, self._rise, self._cover = heat.initial, count * heat.rise, heat.cover / unit_length
         self._unit_time, self._count = unit_time, count
+        # the fastest decay, at x = exp(high), has died out by exp(-9) after a thousandth of the cutoff time
         low, high = math.log(MIN_DECAY_RATE_ROOT), math.log(3.0 / math.sqrt(KERNEL_CUTOFF_TIME * 1e-3))
         x = np.exp(np.arange(low, high, LOG_SPACING)) / math.sqrt(duration)
         self._rates, self._weights = x * x, 2.0 / math.sqrt(math.pi) * LOG_SPACING * x
@@ -67,7 +68,12 @@ class SurfaceHeat:
         return known
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
-        """Store the heat after a step to `time`; power (K,), W, and the platform's distance from center: at its end."""
+        """
+        Store the heat after a step to `time`.
+
+        power, distance: friction power of the contacts, (K,), W, and distance of the platform from the center, both at
+        the end of the step.
+        """
         self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
@@ -85,6 +91,9 @@ class SurfaceHeat:
 
     def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
         """Return the heat state after a step to `time` with friction power and distance from center linear in time."""
+        # With a power that is linear over the step, the heat that each decay keeps of it is known in closed form: of a
+        # power equal to one the share `whole`, of a power that rises from zero to one the share `rising`, for which a
+        # series takes over at small z. Only the part of the step in which the platform covers the contact adds heat.
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)

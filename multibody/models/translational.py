@@ -85,10 +85,10 @@ def assemble_translational(
     expressions = load_coordinates(mbs, ground, _list_loaded_coordinates(masses, nodes, axes))
     recorders = add_recorders(
         mbs,
-        [],
-        [chain, *turning.bodies],
-        [contact_node],
-        [contact] if contact_force or scene.dry_friction.needs_load else [],
+        nodes=[],
+        linear=[chain, *turning.bodies],
+        contact_nodes=[contact_node],
+        contacts=[contact] if contact_force or scene.dry_friction.needs_load else [],
     )
     mbs.Assemble()
 
@@ -100,7 +100,15 @@ def assemble_translational(
     springs = make_friction_springs(mbs, scene, units, [contact], count, under_platform)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(BODY_COORDINATES, count).reshape(-1, axes)
-    parts = _TranslationalSystem(scene, mbs, units, bodies, contact, height, count + turning.coordinates)
+    parts = _TranslationalSystem(
+        scene=scene,
+        mbs=mbs,
+        units=units,
+        bodies=bodies,
+        contact=contact,
+        height=height,
+        coordinates=count + turning.coordinates,
+    )
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -155,7 +163,7 @@ class _TranslationalSystem:
         return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """Return `state` with the same contact force, by penetration, not damping, which rings at smaller steps."""
+        """Return `state` with the same contact force, made by the penetration alone (see `settle_contact`)."""
         x, y, z = (0.0, 0.0, 0.0) if self.scene.flat else state.coordinates[:3].tolist()
         to_center_of_hollow_sphere = -x, -y, 1.0 - z
         length = math.hypot(*to_center_of_hollow_sphere)

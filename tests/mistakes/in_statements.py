@@ -281,8 +281,8 @@ MISTAKES = (
             ("tests/comparison/study/test_reduced_study.py::test_the_equations_are_asked_for_more",)),
     Mistake("comparison/study/models.py", "        base = first if first.reading == LITERAL_SUPREMUM else chain[0]",
             "        base = chain[0]", "An effect between suprema is relative to as integrated.", NUMBERS),
-    Mistake("comparison/study/models.py", 'Pair("supremum", "literal supremum above as integrated", above, printed, small, printed)',
-            'Pair("supremum", "literal supremum above as integrated", above, small, printed, small)',
+    Mistake("comparison/study/models.py", 'sentence=above, first=printed, second=small, base=printed)',
+            'sentence=above, first=small, second=printed, base=small)',
             "The literal supremum lies below.", NUMBERS),
     # tables, alerts and sentences of evidence, found by a list that was written before any test was read
     Mistake(WORDS, "{found}, {limit.allowed:g} allowed", "{found}, {limit.allowed:.1g} allowed",
