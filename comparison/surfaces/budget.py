@@ -51,7 +51,7 @@ def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEnt
 
 def compute_closure_error(comparison: BodyComparison) -> float:
     """
-    Return by how much the effects, added up, miss the total difference: the most at any phase pair, NaN if unknown.
+    Return the largest |sum of effects - total difference| over the phase pairs; NaN if unknown.
 
     It is relative to the amplification by the first model.
     """

@@ -174,7 +174,7 @@ def word_engine_verdict(row: Difference, title: str) -> str:
 
 
 def word_engine_without_values(title: str, like: str, missing: str, outcomes: Mapping[str, int]) -> str:
-    """Return a sentence that a user's engine is not compared; missing: which of the two has no usable value."""
+    """Return a sentence that a user's engine is not compared. missing: which of the two has no usable value."""
     counts = ", ".join(f"{count} × {outcome}" for outcome, count in outcomes.items() if outcome != "ok")
     why = counts or "errors above half of the values"
     return f"{name_engine(title)} is not compared with the {like}: no usable value by {missing} ({why})."

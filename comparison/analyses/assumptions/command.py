@@ -51,7 +51,9 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
     about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over at most {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
-    assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
+    assumptions = Assumptions(
+        variations=MANY, phases=MORE_PHASES, sizes=MORE_SIZES, directed=tuple((key,) for key in DIRECTED)
+    )
     study = Study(tuple(scenes), 1, SUFFICIENT_ERROR)
     results = compute_tasks("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
     found = assumptions.collect(study, None, results)

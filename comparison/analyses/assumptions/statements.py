@@ -73,13 +73,19 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
         base = STATED
     place = int(np.argmax(np.abs(sizes)))  # index of a NaN, if there is one: then the change is unknown
     return Change(
-        cell.scene, body, float(sizes[place]), float(errors[place]), found.phases[place], found.reading, base,
-        cell.no_effect,
-    )  # fmt: skip
+        scene=cell.scene,
+        body=body,
+        size=float(sizes[place]),
+        error=float(errors[place]),
+        phases=found.phases[place],
+        reading=found.reading,
+        base=base,
+        no_effect=cell.no_effect,
+    )
 
 
 def describe_change(change: Change) -> str:
-    """Return a phrase: by how much a body's amplification changes, relative to which model and at which phase pair."""
+    """Return in words by how much a body's amplification changes, relative to which model and at which phase pair."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -115,7 +121,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return a phrase: up to which size of a variation a body's amplification changes by at most `validity.share`."""
+    """Return in words up to which size of a variation a body's amplification changes by at most `validity.share`."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:

@@ -130,11 +130,25 @@ def amplification_of(
         varied = scene if variation is None else variation.of(scene)
     except SceneError as error:
         nothing = np.full((len(phases), len(scene.bodies)), np.nan)
-        return Trial(variation, nothing, nothing, ("refused",) * len(phases), str(error), 0.0)
+        return Trial(
+            variation=variation,
+            mu=nothing,
+            error=nothing,
+            status=("refused",) * len(phases),
+            error_message=str(error),
+            cost=0.0,
+        )
     whole = {"full": True} if body_cannot_tilt(varied) else {}  # do not reduce to translation: it is assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
-    return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
+    return Trial(
+        variation=variation,
+        mu=found.mu,
+        error=found.error,
+        status=tuple(map(str, found.status)),
+        error_message="",
+        cost=float(found.cost),
+    )
 
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
@@ -158,7 +172,17 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
                 change, uncertainty = (
                     tuple(rows[0].tolist()) for rows in compute_relative_change(ask(variation=variation), stated)
                 )
-            of_key.append(DirectionTrial(scene.name, key, variation, change, uncertainty, reason, False))
+            of_key.append(
+                DirectionTrial(
+                    scene=scene.name,
+                    key=key,
+                    variation=variation,
+                    change=change,
+                    uncertainty=uncertainty,
+                    no_effect=reason,
+                    worst=False,
+                )
+            )
         telling = [trial for trial in of_key if not trial.no_effect]
         worst = max(telling, key=lambda trial: np.nan_to_num(np.abs(trial.change), nan=np.inf).max(), default=None)
         found += [replace(trial, worst=trial is worst) for trial in of_key]
@@ -184,7 +208,7 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the next size of a variation to try, to bracket the sizes at which changes exceed CHANGE_LIMITS; or None.
+    Return the next size of a variation to try, or None if the sizes at which changes exceed CHANGE_LIMITS are known.
 
     tried: sizes, each with the largest change of amplification of every body plus its uncertainty, NaN for no value.
     """
@@ -222,5 +246,8 @@ def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)
-    lost = (Trial(each, nothing, nothing, statuses, failed.error_message, 0.0) for each in tried)
-    return TaskTrials(tuple(lost), (), failed.error_message)
+    lost = tuple(
+        Trial(variation=each, mu=nothing, error=nothing, status=statuses, error_message=failed.error_message, cost=0.0)
+        for each in tried
+    )
+    return TaskTrials(trials=lost, error_message=failed.error_message)

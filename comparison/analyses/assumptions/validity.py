@@ -37,15 +37,20 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-# rad, phases of two harmonics; turning bodies change amplification most at the first in scene fig3-I, second in fig3-II
+# rad, phase pairs of a study. Rotation changes the amplification of scene fig3-I most at the first pair, that of
+# fig3-II at the second.
 PHASES = ((0.0, 0.0), (2.0, 0.7))
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
-SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation tried in its worst direction: by a study, by the command
+SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation that a study, or the command, tries in its worst direction
 
 
 @result
 class AssumptionCell:
-    """Change of amplification from translational to spatial model of a varied scene; friction linear below 1 mm/s."""
+    """
+    Change of amplification from the translational model of a scene to the spatial model of the varied scene.
+
+    Both have friction that is linear below a slip speed of 1 mm/s.
+    """
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -111,7 +116,19 @@ def find_validity_ranges(
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
         for body, share in itertools.product(bodies, CHANGE_LIMITS):
             holds, fails, no_value = (None, None, False) if reason else _bracket_share(telling, body, share)
-            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason, no_value))
+            found.append(
+                ValidityRange(
+                    scene=scene.name,
+                    body=body,
+                    share=share,
+                    key=key,
+                    holds=holds,
+                    fails=fails,
+                    direction=direction,
+                    no_effect=reason,
+                    no_value=no_value,
+                )
+            )
     return found
 
 
@@ -300,7 +317,15 @@ class Assumptions(MappedAnalysis[Validity]):
             validity for scene in study.scenes for validity in find_validity_ranges(scene, cells, directions)
         )
         duration = min(DURATION, max(scene.duration for scene in study.scenes))
-        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, duration, tuple(cells), tuple(directions), within)
+        return Validity(
+            assumptions=ASSUMPTIONS,
+            reading=AS_INTEGRATED,
+            phases=self.phases,
+            duration=duration,
+            cells=tuple(cells),
+            directions=tuple(directions),
+            ranges=within,
+        )
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
@@ -312,6 +337,13 @@ def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""
-    rows = tuple(map(tuple, change.tolist())), tuple(map(tuple, uncertainty.tolist()))
-    message = trial.error_message or plain.error_message
-    return AssumptionCell(scene.name, trial.variation, *rows, trial.status, message, trial.cost, blind)
+    return AssumptionCell(
+        scene=scene.name,
+        variation=trial.variation,
+        change=tuple(map(tuple, change.tolist())),
+        uncertainty=tuple(map(tuple, uncertainty.tolist())),
+        status=trial.status,
+        error_message=trial.error_message or plain.error_message,
+        cost=trial.cost,
+        no_effect=blind,
+    )

@@ -44,7 +44,8 @@ SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, regularization speeds of the friction law
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
 MAX_YIELDING_GRID = 8  # largest number of phases per axis, for exact equations with elastic-plastic friction
-OTHER_DAMPING = 0.05  # damping ratio of links in an undamped scene's second curve over yield displacement; else 0 there
+# Damping ratio of links in a second computation over the yield displacement, where the scene has none; else that is 0
+OTHER_DAMPING = 0.05
 # rad, phase pairs for the engine and the exact equations; no symmetry makes two of them equivalent
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harmonic: in these the loading is strongest
@@ -203,7 +204,8 @@ SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "yield_displacement": "u_y",
 }
 
-Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases per axis (0: ENGINE_PHASES)
+# Arguments of a task: scene, index in QUESTIONS, number of phases per axis (0 for the pairs ENGINE_PHASES)
+Arguments = tuple[Scene, int, int]
 
 
 class _Answers(NamedTuple):
@@ -280,7 +282,7 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
 
 
 def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
-    """Return a body's curve: statistics over phases of its amplification, also relative to `answers.supremum`."""
+    """Return the curve of a body, with statistics over the phases of its amplification at each of `speeds`."""
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -361,7 +363,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return for each task: scene, index in QUESTIONS, number of phases per axis (0: only pairs ENGINE_PHASES)."""
+        """Return the arguments of each task: one for every scene and every question that applies to it."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

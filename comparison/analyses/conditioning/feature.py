@@ -154,7 +154,7 @@ def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCu
     }
 
 
-FOUND = ResultField(  # field of summary.json: amplification by smallest slip speed that counts, and limit at zero speed
+FOUND = ResultField(  # field of summary.json with the result of this analysis
     name=Conditioning.key,
     kind=list[ConditioningCurve],
     meaning="mu over the smallest resolved speed, and its literal supremum; null if not computed",

@@ -7,7 +7,7 @@ from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-# m/s, sliding speeds below which no instrument (first) and no computation (second) resolves sliding
+# m/s, speeds below which no instrument (the first) and no computation (the second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
 ILL_CONDITIONED_CHANGE = 1e-3  # amplification is ill-conditioned if slip below LOW_V_C changes it by this share
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
@@ -57,7 +57,7 @@ def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 
 def _word_yielding(curve: ConditioningCurve) -> str:
-    """Return a sentence: amplification mu_1 at the scene's own yield displacement, and its range over other values."""
+    """Return a sentence on the amplification mu_1 at the scene's own yield displacement, and its range over others."""
     assert curve.own is not None
     place = curve.v.index(curve.own)
     mean, largest = (
@@ -73,7 +73,9 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
-    """Return a sentence: range of the mean amplification over yield displacements with another damping of the links."""
+    """
+    Return a sentence on the range of mean amplification over yield displacements, with the links damped otherwise.
+    """
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 

@@ -360,7 +360,9 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
     worst, motion = find_worst_value_and_motion(stripe)
     numbers = [stripe.mean, *stripe.fractiles, worst]
     if not stripe.known:
-        return DemandSummary(structure, stripe, tuple(numbers), ("",) * len(numbers), motion)
+        return DemandSummary(
+            structure=structure, stripe=stripe, numbers=tuple(numbers), marks=("",) * len(numbers), motion=motion
+        )
     mean, worst = stripe.known
     limit = {"displacement": structure.building and structure.building.travel, "travel_share": 1.0}.get(stripe.quantity)
     if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:
@@ -368,11 +370,21 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
         least = ((mean.value or 0.0) * stripe.answered + limit * lost) / stripe.motions
         reached = Statistic(limit, None)
         numbers = [Statistic(least, mean.error), *(reached if n.value is None else n for n in numbers[1:-1]), reached]
-        return DemandSummary(structure, stripe, tuple(numbers), _bound_marks("≥ ", stripe), "")
+        return DemandSummary(
+            structure=structure,
+            stripe=stripe,
+            numbers=tuple(numbers),
+            marks=_bound_marks("≥ ", stripe),
+            motion="",
+        )
     bound = "≤ " if stripe.quantity in SMALLEST_IS_WORST else "≥ "
     numbers = [mean, *numbers[1:-1], worst]
     return DemandSummary(
-        structure, stripe, tuple(numbers), (f" (of {stripe.answered})", *("",) * 3, bound), stripe.known_motion
+        structure=structure,
+        stripe=stripe,
+        numbers=tuple(numbers),
+        marks=(f" (of {stripe.answered})", *("",) * 3, bound),
+        motion=stripe.known_motion,
     )
 
 

@@ -288,7 +288,7 @@ def supremum_sentence(places: Collection[str], differing: Collection[str]) -> st
 
 
 def below_contact_sentence(structure: Structure) -> str:
-    """Return a warning if the platform is below the sliding contact, as if `height` were misread; else ""."""
+    """Return a warning if the platform is below the sliding contact, as if `height` were misunderstood; else ""."""
     building = structure.building
     if building is None or not building.heights or building.heights[0] >= 0.0:
         return ""

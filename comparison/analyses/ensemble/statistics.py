@@ -46,7 +46,7 @@ def _group_by_structure_and_scale(
 
 
 def _summarize_points(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.DemandAtScale]:
-    """Yield statistics over motions of every demand; a motion without a value counts as worse than all others."""
+    """Yield the statistics over the motions of every demand of every structure, at each scale."""
     for name, own in group_rows_by(points, "member.structure").items():
         for quantity in list_quantities(own):
             for scale, at_scale in sorted(group_rows_by(own, "member.scale").items()):
@@ -96,7 +96,7 @@ def summarize_motions(
 
 
 def split_quantity(quantity: Quantity) -> tuple[str, int | None]:
-    """Split a key (demand, body number): return the demand's name and the body, None for the isolator."""
+    """Return the name of a demand and its body, None for the isolator."""
     return quantity[0], quantity[1] or None
 
 

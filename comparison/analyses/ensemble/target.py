@@ -78,8 +78,14 @@ def match_spectrum(
                 raise SceneError(member.scene.name, "--target", file, "the motion has no horizontal acceleration")
             factor = factor_for_spectrum(time, ground, compared, target(compared))
             spectrum = factor * response_spectrum(time, ground, drawn)
-            found[key] = MatchedMotion(member.motion, factor, spectrum.tolist())
+            found[key] = MatchedMotion(motion=member.motion, factor=factor, acceleration=spectrum.tolist())
         factor = found[key].factor
         scene = member.scene.with_values({SCALE_KEY: member.scale * factor, "name": member.scene.name})
         scaled.append(replace(member, scene=scene, factor=factor))
-    return tuple(scaled), TargetSpectrum(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))
+    return tuple(scaled), TargetSpectrum(
+        low=low,
+        high=high,
+        period=drawn.tolist(),
+        acceleration=target(drawn).tolist(),
+        motions=list(found.values()),
+    )

@@ -58,8 +58,11 @@ def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) ->
     curves = []
     for model in keys.values():
         for body in range(1, family.bodies + 1):
-            columns = zip(*(_numbers_of_body(surfaces, scene, model, body) for scene in family.scenes))
-            curves.append(FamilyCurve(model.key, body, *map(tuple, columns)))
+            rows = (_numbers_of_body(surfaces, scene, model, body) for scene in family.scenes)
+            mean, lowest, highest, error = zip(*rows)
+            curves.append(
+                FamilyCurve(model=model.key, body=body, mean=mean, lowest=lowest, highest=highest, error=error)
+            )
     return curves
 
 
@@ -71,8 +74,15 @@ def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfal
         keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
         for key in (*keys, TOTAL):
             column = [scene.get(key, WaterfallBar(key, NAN, NAN, resolved=False)) for scene in bars]
-            columns = zip(*((bar.size, bar.error, bar.resolved) for bar in column))
-            steps.append(FamilyStep(key, body, *map(tuple, columns)))
+            steps.append(
+                FamilyStep(
+                    model=key,
+                    body=body,
+                    size=tuple(bar.size for bar in column),
+                    error=tuple(bar.error for bar in column),
+                    resolved=tuple(bar.resolved for bar in column),
+                )
+            )
     return steps
 
 
@@ -129,8 +139,17 @@ def _make_family_demand(
 
     key: model, quantity and body. rows: by name of the scene, the median, lowest and highest value and their count.
     """
-    numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
-    return FamilyDemand(*key, *map(tuple, zip(*numbers)))
+    model, quantity, body = key
+    median, lowest, highest, motions = zip(*(rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes))
+    return FamilyDemand(
+        model=model,
+        quantity=quantity,
+        body=body,
+        median=median,
+        lowest=lowest,
+        highest=highest,
+        motions=motions,
+    )
 
 
 def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:

@@ -179,6 +179,18 @@ def _compare_peak(
             difference = value - peak.value
             verdict = judge_error(difference, peak.uncertainty + error)
             exceeds = None if verdict == NOT_COMPARED else verdict == NOT_MET
-            computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
-    phases = (math.nan, math.nan) if peak.phases is None else phases_of_peak(peak)
-    return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)
+            computed.append(
+                ComputedPeak(
+                    model=model, value=value, error=error, difference=difference, exceeds=exceeds, status=status
+                )
+            )
+    return MeasuredPeak(
+        scene=scene.name,
+        quantity=peak.quantity,
+        body=peak.body or 0,
+        phases=(math.nan, math.nan) if peak.phases is None else phases_of_peak(peak),
+        value=peak.value,
+        uncertainty=peak.uncertainty,
+        source=peak.source or "",
+        computed=computed,
+    )

@@ -43,10 +43,11 @@ def half_range(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Return the indices of the instants that a decimated motion keeps. values: (T, C) at `time` (T,).
+    Return the indices of the instants that a decimated motion keeps.
 
-    They are both ends, `peaks`, and as many more as it takes for straight lines between them to miss no value by more
-    than MAX_DECIMATION_ERROR of `half_range` of its component.
+    values: (T, C), the components at `time` (T,). peaks: indices to keep in any case. Kept are both ends, the peaks,
+    and as many more as it takes for straight lines between them to miss no value by more than MAX_DECIMATION_ERROR of
+    the `half_range` of its component.
     """
     if len(time) < 3:
         return np.arange(len(time))
@@ -160,7 +161,7 @@ def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Moti
     """
     engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
-        return {MotionPlace(scene.name, 0, 0, ""): engines}
+        return {MotionPlace(scene=scene.name, row=0, column=0, why=""): engines}
     places: dict[tuple[int, int], tuple[str, set[str]]] = {}
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):

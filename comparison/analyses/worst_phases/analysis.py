@@ -181,7 +181,12 @@ def _compute_engine_nearby(
     """Return the engine's amplification at the equations' worst phases, and its largest in a square around them."""
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
-    search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    search = LocalSearch(
+        phases=start.phases[0],
+        value=float(start.value[0]),
+        error=float(start.error[0]),
+        half_width=ENGINE_HALF_WIDTH,
+    )
     # The engine is costly: it is computed at the center and corners of the square and at the highest point predicted.
     (corners, _), (square, _) = make_square_nodes(2), make_square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
