@@ -74,9 +74,7 @@ class MissingValues:
 
 @dataclass(frozen=True)
 class ComparedStudy(Study):
-    """
-    A study that was computed. without_results: keys of the models that comparisons leave out, by name of the scene.
-    """
+    """A study that was computed. without_results: keys of the models that comparisons leave out, by scene."""
 
     without_results: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 

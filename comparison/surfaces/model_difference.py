@@ -95,9 +95,7 @@ class ModelDifference:
 
 
 def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
-    """
-    Return the difference of a pair of models in one body. A value with an error above half of it counts as missing.
-    """
+    """Return the difference of two models in one body. A value with an error above half of it counts as missing."""
     models = pair.first, pair.second, pair.base
     stride = find_common_stride(surfaces, scene, *models)
 

@@ -270,9 +270,7 @@ def _word_largest(known: Sequence[Headline], lacking: Sequence[str]) -> str:
 
 
 def _word_codes(known: Sequence[Headline]) -> str:
-    """
-    Return how far `reference` and Exudyn differ for the same equations, and how much the literal supremum is higher.
-    """
+    """Return how far the two codes differ for the same equations, and how much the literal supremum is higher."""
     parts = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
@@ -314,9 +312,7 @@ def word_difference_cell(numbers: Headline) -> str:
 
 
 def word_range_cell(numbers: Headline) -> str:
-    """
-    Return the text on the smallest and largest difference for the table at the top of the report; "" under a record.
-    """
+    """Return the smallest and largest difference as text for the report's top table; "" under a record."""
     return word_range(numbers) if numbers.points and numbers.phases_per_axis > 1 else ""
 
 

@@ -22,9 +22,7 @@ MAX_ROUNDING_SHARE = 1e-9  # share of the amplification mu: a smaller remainder 
 
 @result
 class WaterfallBar:
-    """
-    Size of one effect, by which two successive models differ, or of the total, relative to the first of all models.
-    """
+    """Size of one effect, by which successive models differ, or of the total; relative to the first of all models."""
 
     model: Annotated[str, "key of the model that the effect leads to; phases for phase pairs that not all models have"]
     size: Annotated[Number, "signed size; null where a model has no value"]

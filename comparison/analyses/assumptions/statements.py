@@ -258,9 +258,7 @@ def list_turning_changes(found: Validity, scene: str) -> list[Change]:
 
 
 def describe_verdict(found: Validity) -> str:
-    """
-    Return a line that says for each scene how rotation, which assumption (vi) excludes, changes the amplification.
-    """
+    """Return a line that says for each scene how rotation, excluded by assumption (vi), changes the amplification."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
         changes = list_turning_changes(found, scene)

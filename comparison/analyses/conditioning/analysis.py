@@ -354,9 +354,7 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """
-    Analysis of how amplification depends on the smallest slip speed that is resolved, in scenes with dry friction.
-    """
+    """Analysis of how amplification depends on the smallest slip speed resolved, in scenes with dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0

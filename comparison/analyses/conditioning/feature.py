@@ -99,9 +99,7 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
-    """
-    Name the peaks that count: at any slip speed ("literal supremum"), or at resolved ones ("as integrated at v_c").
-    """
+    """Name the peaks that count: at any slip speed ("literal supremum"), or only at resolved ones ("as integrated")."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 

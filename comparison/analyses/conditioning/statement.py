@@ -73,9 +73,7 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
-    """
-    Return a sentence on the range of mean amplification over yield displacements, with the links damped otherwise.
-    """
+    """Return a sentence on the range of mean amplification over yield displacements with other damping of the links."""
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 
@@ -143,9 +141,7 @@ def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningC
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
-    """
-    Return the relative change of the mean from the second lowest slip speed of a curve to the lowest, and its error.
-    """
+    """Return the relative change of the mean from the second lowest slip speed to the lowest, and its error."""
     (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
     return after / before - 1.0, sum(errors) / before
 

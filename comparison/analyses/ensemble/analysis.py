@@ -1,6 +1,4 @@
-"""
-Demands of structures under many motions at several scales (incremental dynamic analysis), by equations and engine.
-"""
+"""Demands of structures under many motions at several scales (incremental dynamic analysis), by several models."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

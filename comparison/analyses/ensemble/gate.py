@@ -54,9 +54,7 @@ def check_demands(
 
 
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
-    """
-    Compute the ensemble in this process. engine: whether the engine, too, computes the motions that govern demands.
-    """
+    """Compute the ensemble in this process. engine: whether Exudyn computes motions with a worst demand, too."""
     results = TaskResults()
     _compute_tasks(results, ensemble.make_equation_tasks())
     chosen = choose_motions(ensemble.collect_points(results).equations, None) if engine else []

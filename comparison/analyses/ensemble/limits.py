@@ -381,9 +381,7 @@ def _demands_by_key(ensemble: EnsembleResult) -> dict[DemandKey, DemandAtScale]:
 def _compare_demands(
     named: Mapping[str, str], place: DemandKey, new: DemandAtScale | None, old: DemandAtScale | None, within: float
 ) -> Iterator[DemandCheck]:
-    """
-    Yield the checks of the mean and the largest value of a demand against the stored ones, unless both are missing.
-    """
+    """Yield the checks of the mean and the largest value of a demand against stored ones; none if both are missing."""
     structure, quantity, body, scale = place
     for statistic in (MEAN_STATISTIC, LARGEST_STATISTIC):
         sides = [

@@ -194,9 +194,7 @@ class DemandCurve(DemandOfStructure):
 
 @result
 class SupportExtremes:
-    """
-    Smallest and largest force and largest uplift of a support by one model, over the motions at the largest scale.
-    """
+    """Smallest and largest force and largest uplift of a support by one model, over motions at the largest scale."""
 
     structure: Annotated[str, "name"]
     support: Annotated[int, "from 1"]

@@ -389,9 +389,7 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """
-    Return the marks of mean, fractiles and worst value: `mark`, such as "≥ ", but "" for fractiles that are known.
-    """
+    """Return the marks of mean, fractiles and worst value: `mark`, such as "≥ ", but "" for known fractiles."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 

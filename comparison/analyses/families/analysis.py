@@ -88,9 +88,7 @@ def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfal
 
 @result
 class FamilyDemand:
-    """
-    A demand by one model in each scene of a family: its median, smallest and largest value over motions or phases.
-    """
+    """A demand by one model in each scene of a family: median, smallest and largest value over motions or phases."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]

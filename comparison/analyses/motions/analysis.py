@@ -1,6 +1,4 @@
-"""
-Motions stored for the report, decimated: of every scene a few phase pairs, by the models that the report compares.
-"""
+"""Motions stored for the report: a few phase pairs of every scene, decimated, by the models that are compared."""
 
 from dataclasses import dataclass, field, replace
 

@@ -16,9 +16,7 @@ from reference.problem.readings import BOTH_READINGS
 
 
 def _word_kind(worst: LargestOverPhases) -> str:
-    """
-    Return in words where the largest value over the phases is, such as "on a smooth maximum", or why it is unknown.
-    """
+    """Return in words where the largest value over phases is, such as "on a smooth maximum", or why it is unknown."""
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":

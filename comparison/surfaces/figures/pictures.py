@@ -62,7 +62,7 @@ class Pictures(Analysis[dict[str, bytes]]):
 
 
 def draw_picture(picture: PictureArguments) -> NamedFiles:
-    """Draw one picture, in a worker process, and return the names and contents of its files."""
+    """Draw one picture and return the names and contents of its files. Runs inside a worker process."""
     from comparison.surfaces.figures import pairs, paper  # Plotting libraries are loaded only where a picture is drawn.
 
     kind, study, surfaces, body, pair = picture
