@@ -932,7 +932,7 @@ MISTAKES = (
             "Slope and uncertainty are exchanged.", (TESTS + "report/test_page_plots.py::test_the_cost_is_drawn_by_what_grows_with_its_slopes",)),
     Mistake("comparison/surfaces/missing_values.py", "np.isfinite(select_values(surfaces, \"mu\", scene.name, model)[: len(scene.bodies)]).all(axis=0)", "np.isfinite(select_values(surfaces, \"mu\", scene.name, model)[: len(scene.bodies)]).any(axis=0)",
             "A phase pair where only some bodies have a value is counted as one with a too large error instead of one without a value.", ("tests/comparison/surfaces/test_alerts.py::test_a_phase_pair_where_one_body_has_no_value_is_one_without_an_answer",)),
-    Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / per, error / per", "found, error = value / per, error",
+    Mistake("comparison/analyses/ensemble/limits.py", "found, error = value / divisor, error / divisor", "found, error = value / divisor, error",
             "A limit on a demand relative to a weight is judged with an error bar that is not divided by it.", ("tests/comparison/analyses/test_ensemble_limits.py::test_base_shear_is_limited_as_a_share_of_the_weight",)),
     Mistake(REPORT + "templates/film.js", "cy - size * at(column, 0, 1) / most", "cy + size * at(column, 0, 1) / most",
             "From above the platform moves down where y grows.", (TESTS + "report/test_page_in_a_browser.py::test_the_second_body_has_its_own_motion",)),

@@ -195,24 +195,25 @@ def _check_body(
     ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
 ) -> DemandCheck:
     """Return the check of a demand of a body (None: of the isolator) against its limit, over all motions."""
-    # Motions may lack a value: those that ended early, and those that the engine did not compute. These can only raise
-    # the largest value, so that a limit which the known values break is broken. Whether one that they keep is met stays
-    # open, as does a mean, unless the motions that govern are known.
+    # Motions may lack a value: those that ended early, and those that the engine did not compute. They can only raise
+    # the largest value, so that a limit on it which the known values break is broken in any case. A limit which they
+    # keep is met only if no motion ended early and the engine computed the motions that govern. Where it computed a
+    # part, the largest value takes the place of the mean, which is no larger.
     values, model = _values_at_largest_scale(ensemble, structure.name, key, body)
     known = [
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
     ]
-    per = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
+    divisor = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
     of_engine = model not in ("", EXACT.key)
-    governing = of_engine and len(values) < ensemble.motions
-    taken = LARGEST_STATISTIC if governing else statistic
+    is_part = of_engine and len(values) < ensemble.motions
+    taken = LARGEST_STATISTIC if is_part else statistic
     lacking = (
-        _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if governing else ""
+        _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if is_part else ""
     )
     least, least_motion = _bound_displacement_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
-    on = _word_statistic(ensemble, statistic, count, alone, part=governing, governing=not lacking)
+    on = _word_statistic(ensemble, statistic, count, alone, part=is_part, governing=not lacking)
     by = " by statics" if key == "support_force_max" and not of_engine else ""
     on += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
     what, bound = f"{_word_demand(structure, key, body)}{by}", label_structures(ensemble)[structure.name]
@@ -225,17 +226,17 @@ def _check_body(
         )
     if taken == MEAN_STATISTIC and ended:
         reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
-        needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
+        needed = (limit * len(values) - math.fsum(value for value, *_ in known) / divisor) / ended
         reason += _word_breaking_value(needed, ended, unit)
     if not known:
         reason = reason if values else _explain_lacking_demand(ensemble, key)
         return DemandCheck(*about, found=None, stated=limit, unit=unit, reason=reason)
     value, error, motion = _compute_mean(known) if taken == MEAN_STATISTIC else max(known)
-    found, error = value / per, error / per
+    found, error = value / divisor, error / divisor
     excess = max(found - limit, 0.0)
     if excess > error and statistic == LARGEST_STATISTIC:  # Motions without a value can only raise the largest.
         reason = ""
-    elif excess > error and governing and not reason:  # Missing motions could lower the mean.
+    elif excess > error and is_part and not reason:  # Missing motions could lower the mean.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
     return DemandCheck(
         *about, found=found, stated=limit, excess=excess, allowed=error, unit=unit, motion=motion, reason=reason

@@ -141,7 +141,7 @@ class DemandOfStructure:
 
 @result
 class DemandAtScale(DemandOfStructure):
-    """Statistics of a demand over all motions at one scale, as computed by one model."""
+    """Statistics of a demand over all motions at one scale (a stripe of dynamic analyses), by one model."""
 
     model: Annotated[str, "key of the model"]
     unit: Annotated[str, "SI; empty for a pure number"]
