@@ -207,9 +207,7 @@ def _check_body(
     of_engine = model not in ("", EXACT.key)
     is_part = of_engine and len(values) < ensemble.motions
     taken = LARGEST_STATISTIC if is_part else statistic
-    lacking = (
-        _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if is_part else ""
-    )
+    lacking = _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if is_part else ""
     least, least_motion = _bound_displacement_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
