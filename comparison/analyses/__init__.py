@@ -1,1 +1,1 @@
-"""What answers the question of a user: one folder for each analysis other than the surfaces, shown in index.html."""
+"""Analyses that a study makes besides the amplification surfaces: one folder for each; index.html shows the results."""

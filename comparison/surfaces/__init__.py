@@ -1,1 +1,1 @@
-"""The surfaces of a study: differences, statistics, headline."""
+"""The surfaces of a study, which are amplifications over the two phases: their differences, statistics and headline."""

@@ -67,12 +67,23 @@ def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
 
 
 def check_limits(bodies: Sequence[BodyComparison], gaps: Sequence[MissingValues]) -> list[Limit]:
-    """Return every limit of a scene, compared with differences by body or with missing values, in order of its keys."""
+    """
+    Return every acceptance limit of a scene, compared with the results.
+
+    bodies: the comparison of the models for each body. gaps: the models without a value at some phase pairs.
+    """
     closure = bodies[0].scene.acceptance.closure
     limits = list(_check_differences(bodies, gaps))
     if closure is not None:
         remainders = [(body.body, compute_closure_error(body), None) for body in bodies]
-        limits.append(Limit(bodies[0].scene.name, "closure", closure, _list_breaches(remainders, closure)))
+        limits.append(
+            Limit(
+                scene=bodies[0].scene.name,
+                key="closure",
+                allowed=closure,
+                breaches=_list_breaches(remainders, closure),
+            )
+        )
     return [*limits, *_check_missing_points(bodies[0].study, bodies[0].scene, gaps)]
 
 
@@ -88,8 +99,9 @@ def _check_differences(bodies: Sequence[BodyComparison], gaps: Sequence[MissingV
             missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
             breaches = _list_breaches([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
         else:
-            breaches = (Breach(0, NAN, f"nothing to compare ({_explain_missing_pair(study, scene, pair, gaps)})"),)
-        yield Limit(scene.name, key, allowed, breaches, pair in engines)
+            reason = f"nothing to compare ({_explain_missing_pair(study, scene, pair, gaps)})"
+            breaches = (Breach(body=0, found=NAN, reason=reason),)
+        yield Limit(scene=scene.name, key=key, allowed=allowed, breaches=breaches, default=pair in engines)
 
 
 def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValues]) -> Iterator[Limit]:
@@ -101,20 +113,25 @@ def _check_missing_points(study: Study, scene: Scene, gaps: Sequence[MissingValu
         lacks = {gap: gap.points + gap.unusable for gap in counted}
         count = sum(lacks.values())
         models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in lacks.items())
-        excess = Breach(0, count, f"{count} points without an answer ({models})")
+        excess = Breach(body=0, found=count, reason=f"{count} points without an answer ({models})")
         yield Limit(
-            scene.name,
-            "failed",
-            allowed_points,
-            (excess,) if count > allowed_points else (),
-            stated.allowed_failures is None,
+            scene=scene.name,
+            key="failed",
+            allowed=allowed_points,
+            breaches=(excess,) if count > allowed_points else (),
+            default=stated.allowed_failures is None,
         )
 
 
 def _list_breaches(
     values: Sequence[tuple[int, float, Difference | None]], allowed: float, missing: str = "no phase pair to compare"
 ) -> tuple[Breach, ...]:
-    """Return a breach for each body whose value exceeds the limit or is missing; missing: the reason for the latter."""
+    """
+    Return a breach for each body whose value exceeds the limit or is missing.
+
+    values: number of the body, its value, and the row of differences that the value is of, or None. missing: the reason
+    to state where a value is missing.
+    """
     return tuple(
         Breach(body, value, missing if isnan(value) else "", *((row.largest, row.phases) if row else ()))
         for body, value, row in values
@@ -123,7 +140,11 @@ def _list_breaches(
 
 
 def _find_equal_pair(study: Study, scene: Scene, pair: str) -> str:
-    """Return key `pair`, but "total" for "translational" if the last model is the only engine: the same two models."""
+    """
+    Return the key under which the pair of models `pair` is compared on a scene.
+
+    It is "total" for "translational" where the last model is the only engine model: both keys then mean the same pair.
+    """
     compared = {known.key: known for known in study.pairs(scene)}
     engines = [model.key for model in study.compared(scene) if model.side == "engine"]
     alone = pair == "translational" and engines == [compared["total"].second.key]

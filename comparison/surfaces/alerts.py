@@ -1,4 +1,4 @@
-"""Alerts for the reader: refusals, broken limits, missing values, solver messages, large displacements."""
+"""Alerts for the reader: scenes that a model refused, broken limits, missing values, errors of solvers, wide swings."""
 
 from collections.abc import Iterator, Sequence
 from typing import Literal
@@ -49,7 +49,7 @@ def list_alerts(
     limits: Sequence[Limit],
     faults: Sequence[Alert],
 ) -> list[Alert]:
-    """Return every alert of a run, red (no value, broken limit) before amber; faults: messages of the solvers."""
+    """Return every alert of a run, red ones before amber ones. faults: the alerts from error messages of solvers."""
     listed = [
         *_alerts_of_missing_values(gaps),
         *_limit_alerts(limits),

@@ -18,7 +18,7 @@ from reference.problem import Outcome, Scene
 
 @dataclass(frozen=True)
 class BodyComparison:
-    """Comparison of the models' results for one body of a scene; differences are computed when first used."""
+    """Comparison of the models' amplifications of one body of a scene. Differences are computed when first used."""
 
     study: Study
     surfaces: xr.Dataset
@@ -32,12 +32,12 @@ class BodyComparison:
 
     @cached_property
     def pairs(self) -> list[Pair]:
-        """Return pairs of models to compare: first with last, `reference` with Exudyn on the same equations, others."""
+        """Return the pairs of models to compare, such as the first with the last, or both codes on equal equations."""
         return self.study.pairs(self.scene)
 
     @cached_property
     def effect_pairs(self) -> list[Pair]:
-        """Return pairs of models that differ by one effect, successive ones first, or by the definition of the peak."""
+        """Return the pairs of models that differ by one effect (successive ones first) or by which peaks count."""
         return effect_pairs_of(self.scene, self.study.hierarchy, self.study.left_out(self.scene))
 
     @cached_property
@@ -93,12 +93,19 @@ def compare_bodies(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Bod
 def count_independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
-    """Return the number of phase pairs in `known` (K, K); pairs with mirrored motions in all models count once."""
+    """
+    Return the number of independent phase pairs among those where `known` is true.
+
+    Pairs whose motions are mirror images of each other by all models count once. known: (K, K), over every stride-th
+    phase of the study.
+    """
     if scene.recorded:
         return int(known.any())
     reduced = replace(study, full=False)  # A full study also computes mirrored phases, which are not independent.
     axis = np.arange(0, study.grid, stride)
     places = (study.grid * axis[:, None] + axis)[known]
+    # The orbit of a phase pair, by a model, is the computed pair that its motion mirrors. Two pairs count once if their
+    # orbits are equal by every model.
     orbits = np.empty((len(places), len(models)), dtype=np.intp)
     for column, model in enumerate(models):
         orbit = np.full(study.grid**2, -1)

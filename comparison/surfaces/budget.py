@@ -22,9 +22,9 @@ TOTAL = "total"  # key of the difference between the first and the last model
 @result
 class BudgetEntry(DifferenceStatistics):
     """
-    Statistics of a body's difference between two successive models, or first and last; base: the chain's first model.
+    Statistics of the difference of a body's amplification between two successive models, or the first and the last.
 
-    Its signed mean is the bar in `waterfalls`.
+    Sizes are relative to the first model. The signed mean is the bar in `waterfalls`.
     """
 
     step: Annotated[str, "key of the model that the step leads to, or total"]
@@ -38,7 +38,7 @@ class BudgetEntry(DifferenceStatistics):
 
 
 def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEntry]:
-    """Return the entries of the table of differences, by scene, body, and step from a model to the next."""
+    """Return for each body an entry for the difference between every two successive models, then for the total."""
     return [
         _budget_entry(comparison, pair, key)
         for comparison in comparisons
@@ -50,7 +50,11 @@ def list_budget_entries(comparisons: Iterable[BodyComparison]) -> list[BudgetEnt
 
 
 def compute_closure_error(comparison: BodyComparison) -> float:
-    """Return the largest |sum of effects - total| of all phase pairs, relative to the first model; NaN if unknown."""
+    """
+    Return the largest |sum of effects - total difference| over the phase pairs; NaN if unknown.
+
+    It is relative to the amplification by the first model.
+    """
     total = comparison.difference(comparison.total_pair)
     differences = [comparison.difference(pair) for pair in comparison.consecutive_model_pairs]
     coarsest = max([total.stride, *(each.stride for each in differences)])
@@ -86,6 +90,8 @@ def _budget_entry(comparison: BodyComparison, pair: Pair, key: str) -> BudgetEnt
         columns = (select_values(comparison.surfaces, name, scene, *each)[difference.body - 1] for each in pairs)
         return [np.where(known, column, np.nan) for column in columns]
 
+    # Within its errors a surface may be highest at several phase pairs. The highest point moves at least as far as the
+    # nearest two of them are apart.
     both, errors = values("mu"), values("error")
     places = [np.argwhere(mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
     highest = [[(difference.alpha1[row], difference.alpha2[column]) for row, column in place] for place in places]

@@ -50,13 +50,17 @@ CERTIFICATE_VARIABLES = {  # meaning of each variable that surfaces.nc stores wi
     "model_error": "largest relative error estimate of the model itself at these",
 }
 
-# arguments of a task: scene, model, settings of its amplification, phases (M, 2) in rad
+# Arguments of a task: scene, model, settings of its amplification, phases (M, 2) in rad
 Arguments = tuple[Scene, Model, Mapping[str, object], Array]
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Amplification mu and estimated absolute error, (n, N), at phase pairs held out as a check; NaN without value."""
+    """
+    Amplification of a model at the phase pairs that are held out to check an interpolation.
+
+    mu, error: (n, N), n pairs and N bodies, the amplification and its estimated absolute error; NaN without a value.
+    """
 
     mu: Array
     error: Array
@@ -167,9 +171,10 @@ def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
 
 def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     """
-    Return random phase pairs outside the model's grid, to check interpolation: flat indices on all, alpha2 fastest.
+    Return random phase pairs that the model does not compute, to check the interpolation there.
 
-    The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
+    They are indices in the flattened grid of all phases, in which alpha2 varies fastest, and the same in every run. No
+    two of them are mirror images of each other, and none is of a computed phase pair.
     """
     mirrored = model.symmetric(scene) and not study.full
     same = indices_of_solved_pairs(scene, study.grid) if mirrored else np.arange(study.grid**2)
@@ -192,7 +197,11 @@ def bound_share_beyond_error(held_out: int) -> float:
 def complete_surfaces(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """Return by body the surface over all phases, or why none, of models run at part of them or (spatial) at few."""
+    """
+    Return the completed surfaces of a scene, one for each body and each model that lacks phases of the study.
+
+    The spatial model is listed also if it has all phases of a study with few. A surface that is not completed says why.
+    """
     if scene.recorded:
         return []
     listed = []
@@ -206,7 +215,11 @@ def complete_surfaces(
 
 
 def add_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
-    """Return `surfaces` plus `completed`, amplification interpolated to all phases if accurate enough, and errors."""
+    """
+    Return `surfaces` with the variable `completed` and those of CERTIFICATE_VARIABLES on its error.
+
+    `completed` is the amplification interpolated to all phases, NaN where that is not accurate enough.
+    """
     nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
     about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
     found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
@@ -236,9 +249,12 @@ def _complete_body(
     body: int,
     unused: HeldOut | None,
 ) -> Completion:
-    """Return a body's completed surface (finer model plus interpolated difference), or the reason why there is none."""
+    """
+    Return the completed surface of a body by `model`, or the reason why there is none.
+
+    finer: a model with values at all phases, or None. unused: values of `model` at held-out phase pairs, or None.
+    """
     asked, nan = model.tolerance(study.tolerance), float("nan")
-    about = scene.name, model.key, finer.key if finer else "", body
 
     def mu(of: Model, on: Model) -> Array:
         """Return the usable amplification mu of a body by model `of` at the phases of model `on`."""
@@ -247,11 +263,22 @@ def _complete_body(
 
     gap = mu(model, model) - mu(finer, model) if finer else mu(model, model)
     computed = int(np.isfinite(gap).sum())
+    about: dict[str, Any] = {
+        "scene": scene.name,
+        "model": model.key,
+        "through": finer.key if finer else "",
+        "body": body,
+        "computed": computed,
+        "confidence": CONFIDENCE,
+        "asked": asked,
+    }
 
     def refuse(reason: str) -> Completion:
         """Return a completion without a surface, for this reason."""
         nothing = np.full((study.grid, study.grid), nan)
-        return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
+        return Completion(
+            **about, held_out=0, error=nan, model_error=nan, share=1.0, difference=nan, reason=reason, mu=nothing
+        )
 
     if reason := _explain_refusal(study, finer, model, computed, unused):
         return refuse(reason)
@@ -278,12 +305,23 @@ def _complete_body(
         reason = f"interpolation misses held-out phase pairs by up to {off}, {allowed} asked"
         surface = np.full_like(surface, nan)
     return Completion(
-        *about, computed, held_out, error, model_error, share, CONFIDENCE, asked, difference, reason, surface
+        **about,
+        held_out=held_out,
+        error=error,
+        model_error=model_error,
+        share=share,
+        difference=difference,
+        reason=reason,
+        mu=surface,
     )
 
 
 def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: int, unused: HeldOut | None) -> str:
-    """Return why the models' difference is not interpolated, or ""; computed: phase pairs where both have a value."""
+    """
+    Return why the difference of a model from a finer one is not interpolated, or "".
+
+    computed: number of phase pairs where both have a value. unused: values at held-out phase pairs, or None.
+    """
     count = len(study.phase_indices(model))
     if finer is None:
         return "no model before it has all phases"
@@ -297,13 +335,21 @@ def _explain_refusal(study: Study, finer: Model | None, model: Model, computed: 
 
 
 def interpolate_on_phases(values: Array, phase: Array, every: Array) -> Array:
-    """Interpolate values (K, K) at phases (K,), NaN if unknown, by thin-plate splines to phases `every` (L,), rad."""
+    """
+    Return values (L, L) at all pairs of the phases `every` (L,), interpolated by thin-plate splines.
+
+    values: (K, K) at all pairs of the phases `phase` (K,), NaN where unknown. Phases are in rad.
+    """
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_map_onto_torus(phase)[known], values.ravel()[known])(_map_onto_torus(every))
     return made.reshape(len(every), len(every))
 
 
 def _map_onto_torus(phase: Array) -> Array:
-    """Return cosine and sine of both phases of every pair of a square grid, (K^2, 4), to interpolate periodically."""
+    """
+    Return (K^2, 4): cosine and sine of alpha1, cosine and sine of alpha2, for every pair of the phases (K,).
+
+    What is interpolated over these coordinates is periodic in both phases.
+    """
     alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

@@ -45,7 +45,9 @@ class GridMean:
 @result
 class Difference(DifferenceStatistics):
     """
-    Difference of two models' amplifications of a body: second minus first, relative to model `base`, on common phases.
+    Statistics of the difference between the amplifications of a body by two models, as a row of the report's table.
+
+    The difference is that of the second less the first model, relative to `base`, at the phase pairs of both.
     """
 
     pair: Annotated[str, "key of the pair: total, translational, like-for-like, supremum, reading, or of an effect"]
@@ -113,12 +115,17 @@ def compute_difference_statistics(scene: str, difference: ModelDifference) -> di
 
 
 def make_difference_row(scene: Scene, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
-    """Return a difference's statistics; independent: phase pairs, mirrored ones once; not_ok: pairs not solved "ok"."""
+    """
+    Return the statistics of a difference of two models.
+
+    independent: number of phase pairs with a value, mirrored ones counted once. not_ok: number of pairs at which the
+    outcome of either model is not "ok".
+    """
     pair, size, known = difference.pair, difference.size, difference.known
     grid = len(size)
     stated = known & np.isfinite(difference.uncertainty)
     nan = float("nan")
-    ends = difference.find_largest(-size), difference.find_largest(size)
+    ends = difference.find_largest(-size), difference.find_largest(size)  # where it is smallest, where largest
     return Difference(
         **compute_difference_statistics(scene.name, difference),
         pair=pair.key,
@@ -146,6 +153,10 @@ def make_difference_row(scene: Scene, difference: ModelDifference, independent: 
 
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
-    """Return the mean of a difference and its largest absolute value on a phase grid; sizes: (n, n), NaN if unknown."""
+    """Return the mean of a difference and its largest absolute value on a phase grid. sizes: (n, n), NaN if unknown."""
     known = np.abs(sizes[np.isfinite(sizes)])
-    return GridMean(len(sizes), compute_mean_of_known(sizes), float(known.max()) if known.size else float("nan"))
+    return GridMean(
+        phases_per_axis=len(sizes),
+        mean=compute_mean_of_known(sizes),
+        maximum=float(known.max()) if known.size else float("nan"),
+    )

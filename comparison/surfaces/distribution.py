@@ -14,7 +14,7 @@ from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
 
-CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities of points of the drawn amplification distribution
+CURVE_PROBABILITIES = np.linspace(0.01, 0.99, 50)  # probabilities at which a distribution is drawn
 
 
 @result
@@ -60,28 +60,46 @@ def compute_distributions(surfaces: xr.Dataset, scene: Scene, models: Sequence[M
             fractiles = tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles))
             curve = tuple(fractile(known, p) for p in CURVE_PROBABILITIES)
             mean = UncertainNumber.model_validate(taken.mean)
-            listed.append(Distribution(model.key, body, taken.points, taken.unknown, mean, fractiles, curve))
+            listed.append(
+                Distribution(
+                    model=model.key,
+                    body=body,
+                    points=taken.points,
+                    unknown=taken.unknown,
+                    mean=mean,
+                    fractiles=fractiles,
+                    curve=curve,
+                )
+            )
     return listed
 
 
 def find_grid_maxima(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) -> list[GridMaximum]:
-    """Return the largest amplification for each model and body, in this order; of equal ones the first phase pair."""
+    """Return the largest amplification of each model and body, in this order; of equal ones the first phase pair."""
     maxima, nan = [], float("nan")
     for model, body, mu, error in _usable_values(surfaces, scene, models):
         if not np.isfinite(mu).any():
-            maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
+            maxima.append(GridMaximum(model=model.key, body=body, mu=nan, error=nan, phases=(nan, nan)))
             continue
         row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
         phase = surfaces["alpha1"].values[:: find_common_stride(surfaces, scene.name, model)]
         phases = (nan, nan) if scene.recorded else (float(phase[row]), float(phase[column]))
-        maxima.append(GridMaximum(model.key, body, float(mu[row, column]), float(error[row, column]), phases))
+        maxima.append(
+            GridMaximum(
+                model=model.key,
+                body=body,
+                mu=float(mu[row, column]),
+                error=float(error[row, column]),
+                phases=phases,
+            )
+        )
     return maxima
 
 
 def _usable_values(
     surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]
 ) -> Iterator[tuple[Model, int, Array, Array]]:
-    """Yield model, body, usable amplification and its error, both (K, K) at the model's phases, for every body."""
+    """Yield for every model and body these two, the usable amplification and its error, both (K, K) over the phases."""
     for model in models:
         of_bodies = zip(usable_mu(surfaces, scene.name, model), select_values(surfaces, "error", scene.name, model))
         for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):

@@ -1,4 +1,4 @@
-"""Headline of one body: how much the engine and the paper's equations differ, and why, in numbers and one sentence."""
+"""Headline of a body: how much the last model differs from the paper's equations, and why, in numbers and in words."""
 
 import math
 from collections.abc import Sequence
@@ -13,21 +13,27 @@ from comparison.surfaces.statements import name_engine, word_engine, word_engine
 from comparison.surfaces.surfaces import count_outcomes
 from comparison.surfaces.waterfall import NAN, Waterfall
 
-# An effect above this share of the total difference is named as its cause; the interaction of an effect with another
-# one is stated if it is above this share of the effect
+# An effect is named as a cause of the total difference if it is above this share of it. That an effect depends on the
+# order of the effects is stated if the change is above this share of the effect.
 NAMED_SHARE = 0.2
-# For each effect: key of the pair of models that differ by it if effects come in another order; that order in words
+# For each effect: key of another pair of models that differ by it, with the effects in another order, and that order in
+# words
 SAME_EFFECT_PAIRS = {
     "geometry": ("geometry-regularized", "under regularized friction"),
     "regularized-friction": ("regularized-friction-small", "without geometry"),
 }
-# For each effect: key of the pair of models that differ by it if peaks include the limits at stops (literal supremum)
+# For each effect: key of the pair of models that differ by it and whose peaks include the one-sided limits of the
+# acceleration at stops (literal supremum)
 SUPREMUM_PAIRS = {"geometry": "geometry-supremum"}
 
 
 @result
 class Effect:
-    """Mean change of a body's amplification by an effect of a model, and the mean if effects come in another order."""
+    """
+    An effect, by which a model differs from the one before: the mean change of a body's amplification.
+
+    With the effects in another order the change may be another one, which is stated beside it.
+    """
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -47,7 +53,18 @@ class Effect:
 
 
 # Effect of size zero, in place of one that a scene does not have
-NO_EFFECT = Effect("", "", 0.0, 0.0, NAN, True, NAN, "", NAN, NAN)
+NO_EFFECT = Effect(
+    effect="",
+    model="",
+    mean=0.0,
+    error=0.0,
+    share=NAN,
+    resolved=True,
+    elsewhere=NAN,
+    order="",
+    interaction=NAN,
+    supremum=NAN,
+)
 
 
 @result
@@ -126,7 +143,7 @@ class Headline:
 
 
 def make_headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
-    """Return the total difference of one body in numbers and words; bars: its split into effects that add up to it."""
+    """Return the total difference of one body in numbers and words. bars: its split into effects that add up to it."""
     total, pair, largest = comparison.total, comparison.total_pair, bars.largest
     scene = comparison.scene
     effects = compute_effects(comparison)
@@ -220,7 +237,12 @@ def compute_effects(comparison: BodyComparison) -> tuple[Effect, ...]:
 
 
 def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
-    """Return resolved effects (see `Effect`) above a fifth of the total, largest first; none if that is unresolved."""
+    """
+    Return the effects that are named as causes of the total difference, the largest first.
+
+    They are resolved (their means exceed their errors, see `Effect`) and above a fifth of the total. There is none if
+    the total itself is not resolved.
+    """
     if not total.mean_is_resolved:
         return []
     named = [effect for effect in effects if effect.resolved and abs(effect.mean) > NAMED_SHARE * abs(total.mean)]
@@ -228,14 +250,14 @@ def select_causes(effects: Sequence[Effect], total: Difference) -> list[Effect]:
 
 
 def find_main_cause(effects: Sequence[Effect], causes: Sequence[Effect]) -> str:
-    """Return the name of the largest effect if `causes` has it; "" if not, or if errors leave open which it is."""
+    """Return the name of the largest effect; "" if it is not in `causes`, or if errors leave open which it is."""
     first, second = (sorted([*effects, NO_EFFECT, NO_EFFECT], key=lambda effect: -abs(effect.mean)))[:2]
     told = abs(first.mean) - abs(second.mean) > math.hypot(first.error, second.error)
     return first.effect if told and first in causes else ""
 
 
 def _word_model_name(model: Model, chain: Sequence[Model]) -> str:
-    """Return the name of a model in a sentence; chain: models of the scene, the first the paper's equations."""
+    """Return the name of a model in a sentence. chain: models of the scene, of which the first is the paper's."""
     if model.side == "engine":
         return f"Exudyn ({model.title.replace(' engine', '')})"
     return "the paper's equations" if chain and model is chain[0] else f"the {model.title}"

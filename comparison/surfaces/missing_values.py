@@ -74,7 +74,7 @@ class MissingValues:
 
 @dataclass(frozen=True)
 class ComparedStudy(Study):
-    """A computed study. without_results: keys of models that comparisons leave out, by name of the scene."""
+    """A study that was computed. without_results: keys of the models that comparisons leave out, by scene."""
 
     without_results: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -84,7 +84,11 @@ class ComparedStudy(Study):
 
 
 def leave_out_empty_models(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
-    """Return the study without models that have no usable value, unless fewer than two models would remain."""
+    """
+    Return the study with the models that have no usable value left out of comparisons.
+
+    Where fewer than two models would remain, only a user's models are left out.
+    """
     without_results = {}
     for scene in study.scenes:
         steps = chain_of(scene, study.hierarchy)
@@ -119,7 +123,18 @@ def list_missing_values(study: Study, surfaces: xr.Dataset) -> list[MissingValue
                 counts = count_outcomes(surfaces, scene.name, model).items()
                 bad = [(outcome, count) for outcome, count in counts if outcome != Outcome.OK]
                 notes = tuple(OutcomeNote(*each, advise_on_outcome(study, scene, model, each[0])) for each in bad)
-                gaps.append(MissingValues(scene.name, model.key, model.title, missing, unusable, asked, used, notes))
+                gaps.append(
+                    MissingValues(
+                        scene=scene.name,
+                        model=model.key,
+                        title=model.title,
+                        points=missing,
+                        unusable=unusable,
+                        asked=asked,
+                        used=used,
+                        outcomes=notes,
+                    )
+                )
     return gaps
 
 

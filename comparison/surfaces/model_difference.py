@@ -18,13 +18,13 @@ RESOLVED_RATIO = 5.0  # multiple of its uncertainty u_D above which a difference
 @dataclass(frozen=True)
 class ModelDifference:
     """
-    Relative difference in amplification of a pair of models, at the phases (alpha1, alpha2), rad, that they share.
+    Relative difference between the amplifications of a body by a pair of models, at the phase pairs of both.
 
     It is (amplification by the second model - amplification by the first) / amplification by the base.
 
-    size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
-    same unit, NaN where one is not stated. stride: they are every stride-th of the study's phases. recorded: the scene
-    has no phases.
+    alpha1, alpha2: (K,), rad, every stride-th of the study's phases. size: (K, K), signed, NaN where a value is
+    missing. uncertainty: (K, K), u_D = sqrt(u_A^2 + u_B^2) of the error estimates of both models, relative as the size,
+    NaN where one is not stated. recorded: whether the scene is under a recorded motion, which has no phases.
     """
 
     pair: Pair
@@ -95,7 +95,7 @@ class ModelDifference:
 
 
 def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
-    """Return the difference of a pair of models in one body; amplifications with errors above half count as missing."""
+    """Return the difference of two models in one body. A value with an error above half of it counts as missing."""
     models = pair.first, pair.second, pair.base
     stride = find_common_stride(surfaces, scene, *models)
 
@@ -120,7 +120,11 @@ def compute_difference(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) 
 
 
 def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
-    """Return the first model's amplification by body, at phases of all models; NaN if its error is above half of it."""
+    """
+    Return the amplification by the first model, (body, alpha1, alpha2), at the phases that all `models` have.
+
+    A value whose error is above half of it is NaN.
+    """
     return drop_unusable_values(*(select_values(surfaces, name, scene, *models) for name in ("mu", "error")))
 
 

@@ -25,7 +25,12 @@ MAX_NAMED_SCENES = 4  # largest number of scenes that a sentence names
 
 
 def word_headline(numbers: Headline) -> str:
-    """Return one body's headline: difference, causes, `reference` against Exudyn, and peaks with limits at stops."""
+    """
+    Return the headline of one body in words.
+
+    It says by how much the last model differs from the first, which effects cause this, how closely `reference` and
+    Exudyn agree, and by how much the literal supremum is higher.
+    """
     parts = [word_total(numbers), word_causes(numbers), word_agreement(numbers), word_supremum(numbers)]
     rest = " ".join(part for part in parts if part)
     where = f"{numbers.scene}, {numbers.name}, {numbers.reading}"
@@ -33,7 +38,7 @@ def word_headline(numbers: Headline) -> str:
 
 
 def word_total(numbers: Headline) -> str:
-    """Return by how much the last model differs from the first: in the mean, smallest and largest."""
+    """Return by how much the last model differs from the first: in the mean, at least and at most."""
     first, second = numbers.first_name, numbers.second_name
     if numbers.first == numbers.second:
         return f"only {first} were computed, there is nothing to compare."
@@ -169,7 +174,7 @@ def word_engine_verdict(row: Difference, title: str) -> str:
 
 
 def word_engine_without_values(title: str, like: str, missing: str, outcomes: Mapping[str, int]) -> str:
-    """Return a sentence that a user's engine is not compared; missing: which of the two has no usable value."""
+    """Return a sentence that a user's engine is not compared. missing: which of the two has no usable value."""
     counts = ", ".join(f"{count} × {outcome}" for outcome, count in outcomes.items() if outcome != "ok")
     why = counts or "errors above half of the values"
     return f"{name_engine(title)} is not compared with the {like}: no usable value by {missing} ({why})."
@@ -221,10 +226,10 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     """
-    Return the result of the whole study in at most three sentences; measured: the last, on measurements.
+    Return the result of the whole study in at most three sentences.
 
-    How far the paper's equations lie from the last model, in which reading; how closely the codes agree where they
-    solve the same, and what the other reading is worth; what was measured.
+    They say how far the paper's equations are from the last model; how closely the two codes agree where they solve the
+    same equations, and by how much the literal supremum is higher; and what was measured (`measured`).
     """
     known = [each for each in headlines if math.isfinite(each.mean) and each.first != each.second]
     if not known:
@@ -236,9 +241,10 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
 
 def _word_largest(known: Sequence[Headline], lacking: Sequence[str]) -> str:
     """
-    Return a sentence on the largest and next mean difference of all bodies, and extremes at single phase pairs.
+    Return a sentence on the largest and the second largest mean difference of all bodies.
 
-    lacking: names of scenes with bodies of which the models have no value in common.
+    It also says how small and large the difference is at single phase pairs. lacking: names of scenes with a body for
+    which the models have no value in common.
     """
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
     phased = [each for each in known if each.phases_per_axis > 1]
@@ -264,7 +270,7 @@ def _word_largest(known: Sequence[Headline], lacking: Sequence[str]) -> str:
 
 
 def _word_codes(known: Sequence[Headline]) -> str:
-    """Return how far `reference` and Exudyn differ for the same equations, and how far limits at stops raise peaks."""
+    """Return how far the two codes differ for the same equations, and how much the literal supremum is higher."""
     parts = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
@@ -306,7 +312,7 @@ def word_difference_cell(numbers: Headline) -> str:
 
 
 def word_range_cell(numbers: Headline) -> str:
-    """Return the text on the range of differences over the phases for the report's top table; "" under a record."""
+    """Return the smallest and largest difference as text for the report's top table; "" under a record."""
     return word_range(numbers) if numbers.points and numbers.phases_per_axis > 1 else ""
 
 

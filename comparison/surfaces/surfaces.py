@@ -35,11 +35,11 @@ def make_surface_tasks(study: Study) -> list[Task]:
     models = {model.key: model for model in study.hierarchy}
     return [
         Task(
-            execute_batch,
-            batch,
-            models[batch.model].title,
-            batch.points * estimate_point_seconds(batch.scene, models[batch.model]),
-            batch.question,
+            function=execute_batch,
+            argument=batch,
+            stage=models[batch.model].title,
+            seconds=batch.points * estimate_point_seconds(batch.scene, models[batch.model]),
+            about=batch.question,
             needs_compiled_reference=batch.amplification.startswith("reference:"),
             timeout=batch.timeout,
             group=batch.group,
@@ -59,12 +59,13 @@ def collect_batch_results(tasks: Sequence[Task], results: TaskResults) -> list[B
 
 def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
-    Return the models' results as a data set with dimensions scene, model, body, alpha1, alpha2 (rad).
+    Return the models' results as a data set with the dimensions scene, model, body, alpha1, alpha2 (rad).
 
-    `mu` and `error` (absolute, estimated) are NaN where a point has no answer, where a model does not apply to the
-    scene, between the phases of a model with a `stride` above 1 (a `recorded` scene has one point, the first), and in
-    bodies a scene does not have (`bodies` counts them). `status` names each point's outcome, `instant` (s) when it
-    arose; `displacement` is the largest of the platform, m, `cap_share` the same over rho. `cost` (scene, model) is s.
+    `mu` is the amplification and `error` its estimated absolute error. Both are NaN at a phase pair without an answer,
+    where a model does not apply to the scene, between the phases of a model that computes only every `stride`-th, and
+    in a body that the scene does not have (`bodies` counts them). A `recorded` scene has one value, at the first pair.
+    `status` names the outcome of each pair and `instant` when it arose, s. `displacement` is the largest of the
+    platform, m, and `cap_share` the same over rho. `cost` (scene, model) is the compute time, s.
     """
     bodies, axis = max(len(scene.bodies) for scene in study.scenes), phase_axis(study.grid)
     values, cost = _place_answers(study, batches, answers, bodies)
@@ -101,7 +102,11 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
 def _place_answers(
     study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult], bodies: int
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.float64]]:
-    """Return an array of each variable, (scene, model, [body,] index on the grid), and the cost of each surface, s."""
+    """
+    Return the arrays of all variables by name, and the compute time of each surface, s, (scene, model).
+
+    An array is (scene, model, body, index in the flattened grid of phases), without body where the variable has none.
+    """
     names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
     square, points = (len(names), len(models)), study.grid**2
     values: dict[str, NDArray[Any]] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
@@ -123,7 +128,11 @@ def _place_answers(
 
 
 def copy_to_mirror_images(study: Study, arrays: Sequence[NDArray[Any]]) -> None:
-    """Copy arrays (scene, model, ..., index on the grid) from the computed phase pairs to their mirror images."""
+    """
+    Copy values from the computed phase pairs to their mirror images.
+
+    arrays: (scene, model, ..., index in the flattened grid of phases); they are changed in place.
+    """
     for row, scene in enumerate(study.scenes):
         for column, model in enumerate(study.hierarchy):
             if model.applies(scene):
@@ -151,7 +160,11 @@ def find_common_stride(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
 
 
 def select_values(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
-    """Return variable `name` of the first of `models` at the phases that all of them compute; mu and error by body."""
+    """
+    Return a variable of the surfaces for the first of `models`, at the phases that all of them compute.
+
+    It is (alpha1, alpha2), for "mu" and "error" (body, alpha1, alpha2).
+    """
     every = slice(None, None, find_common_stride(surfaces, scene, *models))
     values: NDArray[Any] = surfaces.variables[name].values[
         (*_find_model_index(surfaces, scene, models[0]), ..., every, every)

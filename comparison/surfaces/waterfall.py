@@ -1,8 +1,9 @@
 """
 Waterfall of one body: the total difference as signed bars that add up, one for each effect of the model sequence.
 
-A bar is the mean over the finest grid of phases that both of its models have, relative to the sequence's first model.
-The total has the grid of the coarsest model; what the means of the finer grids leave of it is a bar of its own.
+A bar is the mean difference of two successive models, relative to the first of all models, over the finest grid of
+phases that both have. The total is a mean over the grid of the coarsest model. What the bars leave of it, because their
+grids are finer, is a bar of its own.
 """
 
 from dataclasses import replace
@@ -59,9 +60,14 @@ def make_waterfall(comparison: BodyComparison) -> Waterfall:
     bars = [_mean_bar(row) for row in comparison.consecutive_rows]
     left = total.mean - sum(bar.size for bar in bars)
     if abs(left) > MAX_ROUNDING_SHARE:
-        bars.append(WaterfallBar(UNEQUAL_PHASES, left, abs(left), resolved=False))
-    about = comparison.scene.name, comparison.body
-    return Waterfall(*about, tuple(bars), _mean_bar(total), find_largest_difference(comparison))
+        bars.append(WaterfallBar(model=UNEQUAL_PHASES, size=left, error=abs(left), resolved=False))
+    return Waterfall(
+        scene=comparison.scene.name,
+        body=comparison.body,
+        bars=tuple(bars),
+        total=_mean_bar(total),
+        largest=find_largest_difference(comparison),
+    )
 
 
 def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
@@ -71,7 +77,8 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
     totals = [replace(comparison.total_pair, second=model, base=models[0]) for model in later]
     known = [pair for pair in totals if comparison.difference(pair).known.any()]
     if not known:
-        return LargestDifference((), WaterfallBar(models[-1].key, NAN, NAN, False), (NAN, NAN), 0)
+        nothing = WaterfallBar(model=models[-1].key, size=NAN, error=NAN, resolved=False)
+        return LargestDifference(bars=(), total=nothing, phases=(NAN, NAN), phases_per_axis=0)
 
     def size(pair: Pair) -> float:
         """Return the largest absolute difference of a pair of models at any phase pair."""
@@ -83,16 +90,22 @@ def find_largest_difference(comparison: BodyComparison) -> LargestDifference:
     assert total.largest_place is not None
     chain = comparison.consecutive_model_pairs[: models.index(largest.second)]
     bars = tuple(_bar_at(comparison, pair, total.largest_place) for pair in chain)
-    return LargestDifference(bars, _bar_at(comparison, largest, total.largest_place), total.phases, len(total.size))
+    return LargestDifference(
+        bars=bars,
+        total=_bar_at(comparison, largest, total.largest_place),
+        phases=total.phases,
+        phases_per_axis=len(total.size),
+    )
 
 
 def _mean_bar(row: Difference) -> WaterfallBar:
     """Return the bar of two successive models: their mean difference over the phases."""
-    return WaterfallBar(row.second, row.mean, row.error, row.mean_is_resolved)
+    return WaterfallBar(model=row.second, size=row.mean, error=row.error, resolved=row.mean_is_resolved)
 
 
 def _bar_at(comparison: BodyComparison, pair: Pair, place: tuple[int, int]) -> WaterfallBar:
     """Return the bar of a pair of models: their difference at one phase pair."""
     difference = comparison.difference(pair)
     size, error = difference.at(difference.size, place), difference.at(difference.uncertainty, place)
-    return WaterfallBar(pair.second.key, size, error, bool(abs(size) > RESOLVED_RATIO * error))
+    resolved = bool(abs(size) > RESOLVED_RATIO * error)
+    return WaterfallBar(model=pair.second.key, size=size, error=error, resolved=resolved)

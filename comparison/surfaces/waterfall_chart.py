@@ -14,7 +14,7 @@ MAX_TICKS = 5  # largest number of ticks of the axis
 
 @dataclass(frozen=True)
 class LinearScale:
-    """Horizontal axis of a waterfall chart: relative differences at its ends, and round values between as ticks."""
+    """Horizontal axis of a waterfall chart: the relative differences at its ends, and round values for its ticks."""
 
     low: float
     high: float
@@ -57,7 +57,7 @@ def make_common_scale(waterfalls: Iterable[tuple[Sequence[WaterfallBar], Waterfa
 
 @dataclass(frozen=True)
 class LogScale:
-    """Logarithmic axis of relative differences; `ticks`: positions of the powers of ten, percent of its length."""
+    """Logarithmic axis of relative differences, with these at its ends."""
 
     low: float
     high: float
@@ -70,7 +70,7 @@ class LogScale:
 
     @property
     def ticks(self) -> list[float]:
-        """Return the positions of the powers of ten."""
+        """Return the positions of the powers of ten, percent of the length."""
         powers = range(round(math.log10(self.low)), round(math.log10(self.high)) + 1)
         return [self.at(10.0**power) for power in powers]
 
@@ -100,18 +100,20 @@ def _place_bar(bar: WaterfallBar, model: str, start: float, scale: LinearScale) 
     """Return where a bar that begins at `start` is drawn, and its kind: up, down, total, or unresolved."""
     begin = scale.at(start)
     if not isfinite(bar.size):
-        return ChartBar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
+        return ChartBar(
+            model=model, kind="none", left=begin, width=0.0, error=(begin, begin), end=begin, text="no value"
+        )
     end = scale.at(start + bar.size)
     ends = scale.at(start + bar.size - _finite_error(bar)), scale.at(start + bar.size + _finite_error(bar))
     kind = "unresolved" if not bar.resolved else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
     return ChartBar(
-        model,
-        kind,
-        min(begin, end),
-        round(abs(end - begin), 3),
-        ends,
-        end,
-        word_difference(bar.size, _finite_error(bar)),
+        model=model,
+        kind=kind,
+        left=min(begin, end),
+        width=round(abs(end - begin), 3),
+        error=ends,
+        end=end,
+        text=word_difference(bar.size, _finite_error(bar)),
     )
 
 

@@ -51,7 +51,9 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     about = f"{len(MANY)} variations, and up to {MORE_SIZES} sizes of an oval, an offset and an angle"
     about = f"{about} in the worst direction, at {len(MORE_PHASES)} phase pairs over at most {DURATION:g} s of motion"
     console.print(f"{about}: minutes for each scene.")
-    assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
+    assumptions = Assumptions(
+        variations=MANY, phases=MORE_PHASES, sizes=MORE_SIZES, directed=tuple((key,) for key in DIRECTED)
+    )
     study = Study(tuple(scenes), 1, SUFFICIENT_ERROR)
     results = compute_tasks("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
     found = assumptions.collect(study, None, results)
@@ -75,7 +77,11 @@ def _load_spatial_scene(name: str) -> Scene:
 
 
 def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
-    """Print for each variation of a scene the change of each body's amplification, percent, and its uncertainty u_D."""
+    """
+    Print a table with a row for each variation of a scene.
+
+    A row has, for each body, the change of its amplification and the uncertainty u_D of that change, both in percent.
+    """
     cells = [cell for cell in found.cells if cell.scene == scene.name]
     about = f"largest change of mu_i, {found.reading}, against the translational model, per body"
     console.print(f"{scene.title} ({scene.name}): {about}")
@@ -102,7 +108,7 @@ def _print_assumptions(console: Console, scene: Scene, found: Validity) -> None:
 
 
 def _word_uneven_variation(variation: Variation, radius: float) -> str:
-    """Return in words how a variation narrows the ring of supports, moves or rotates bodies. radius: of the ring, m."""
+    """Return how a variation narrows the ring of supports, moves or rotates bodies. radius: of the stated ring, m."""
     towards = f"at {math.degrees(variation.direction):.0f}°"
     parts = [f"oval {variation.oval:.2g} {towards}"] if variation.oval else []
     parts += [f"{variation.offset * radius:.2g} m {towards}"] if variation.offset else []

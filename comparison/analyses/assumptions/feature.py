@@ -1,4 +1,4 @@
-"""How far the assumptions of the paper carry: in the report."""
+"""The section of the report on how far the paper's assumptions hold."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -27,7 +27,7 @@ AXES: dict[Axis, str] = {
     "offset": "offset of bodies in the worst direction, m",
     "yaw": "angle of bodies and links in the worse sense, rad",
 }
-# Shaded bands of a plot, percent: changes of the amplification inside a band are within the limit of that band
+# Shaded bands of a plot, one for each limit on the change of amplification: from minus to plus the limit, percent
 BANDS = [
     {"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in CHANGE_LIMITS
 ]
@@ -85,13 +85,16 @@ def assumption_verdict(results: Results) -> str:
 
 # Registration of this analysis with the program: field of summary.json, computation, section of the report
 FEATURE = Feature(
-    Assumptions.key,
-    (FOUND,),
+    key=Assumptions.key,
+    fields=(FOUND,),
     analysis=Assumptions(),
     section=Section(
-        "How far the paper's assumptions hold",
-        "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
-        section_context,
+        title="How far the paper's assumptions hold",
+        absent=(
+            "no scene with phases says where its supports are and how high and large its bodies, as the spatial model "
+            "asks"
+        ),
+        context=section_context,
         verdict=assumption_verdict,
     ),
 )

@@ -1,4 +1,4 @@
-"""All sentences on the assumptions, from signed changes of amplification, errors, peak definition, model compared."""
+"""All sentences on the assumptions: they say how far variations of a scene change the amplification of its bodies."""
 
 import math
 from collections.abc import Sequence
@@ -21,14 +21,20 @@ from reference.problem import Scene
 
 NO_EFFECT = "no effect by symmetry"  # text in place of a change of amplification that a symmetry makes zero
 Base = Literal["the translational model", "the stated spatial model"]  # model that amplifications are compared with
-TRANSLATIONAL: Base = "the translational model"  # base of a change of amplification, as a sentence names it
-STATED: Base = "the stated spatial model"  # model that amplifications are compared with: spatial, unvaried scene
+TRANSLATIONAL: Base = "the translational model"  # the engine's model without rotations
+STATED: Base = "the stated spatial model"  # the engine's model with rotations, of the scene without variations
 SHARE = CHANGE_LIMITS[0]  # largest relative change of a body's amplification with which an assumption holds
 
 
 @dataclass(frozen=True)
 class Change:
-    """Largest change of a body's amplification over phase pairs, with sign and error; base: model it is relative to."""
+    """
+    Largest relative change of a body's amplification over the phase pairs.
+
+    size: the change with its sign. error: its uncertainty. phases: the pair at which it is largest, rad. reading: which
+    peaks count in the amplification. base: the model that the change is relative to. no_effect: why symmetry makes the
+    change zero, or "".
+    """
 
     scene: str
     body: int
@@ -51,24 +57,35 @@ class Change:
 
 
 def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
-    """Return the largest change of a body's amplification over phases, from spatial `stated` or translational model."""
+    """
+    Return the largest change of a body's amplification over the phase pairs, caused by the variation of `cell`.
+
+    It is relative to the spatial model of the scene as stated if `stated` gives this, else to the translational model.
+    """
     sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
         if len(before) < len(sizes):  # by symmetry equal at all phase pairs: only the first was computed
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
+        # Both changes are relative to the translational model: the ratio of the two amplifications eliminates it.
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED
     place = int(np.argmax(np.abs(sizes)))  # index of a NaN, if there is one: then the change is unknown
     return Change(
-        cell.scene, body, float(sizes[place]), float(errors[place]), found.phases[place], found.reading, base,
-        cell.no_effect,
-    )  # fmt: skip
+        scene=cell.scene,
+        body=body,
+        size=float(sizes[place]),
+        error=float(errors[place]),
+        phases=found.phases[place],
+        reading=found.reading,
+        base=base,
+        no_effect=cell.no_effect,
+    )
 
 
 def describe_change(change: Change) -> str:
-    """Return a phrase: by how much a body's amplification changes, relative to which model and at which phase pair."""
+    """Return in words by how much a body's amplification changes, relative to which model and at which phase pair."""
     if change.no_effect:
         return f"mu_{change.body}: {NO_EFFECT}"
     if not math.isfinite(change.size):
@@ -80,8 +97,9 @@ def describe_change(change: Change) -> str:
     )
 
 
-# Five phrases by varied quantity: the change of amplification exceeds its limit at the first size; is within it only at
-# zero; is within it up to {holds}; exceeds it at {fails}; is within it at all sizes tried
+# Five phrases for each varied quantity, one for each result: the change of amplification exceeds its limit at the first
+# size; is within it only at size zero; is within it up to the size {holds}; exceeds it at the size {fails}; is within
+# it at all sizes tried. `describe_range` fills in the sizes, the {direction} and the {sense} of rotation.
 WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
     "ring": ("with a ring of {fails:g} m, the largest tried", "", "with rings from {holds:g} m",
              "at {fails:g} m", "every smaller one tried too"),
@@ -100,11 +118,10 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
-# `describe_range` fills phrases in WORDS with the sizes {holds} and {fails}, the {direction}, the {sense} of rotation.
 
 
 def describe_range(validity: ValidityRange) -> str:
-    """Return a phrase: up to which size of a variation a body's amplification changes by at most `validity.share`."""
+    """Return in words up to which size of a variation a body's amplification changes by at most `validity.share`."""
     none, zero, holds, fails, every = WORDS[validity.key]
     name = f"mu_{validity.body}"
     if validity.no_effect:
@@ -133,7 +150,11 @@ VARIED: dict[Axis, str] = {  # name of each varied quantity in a phrase
 
 
 def range_cell(validity: ValidityRange) -> str:
-    """Return a table cell: last size of a variation within the limit on the change, first size beyond; or NO_EFFECT."""
+    """
+    Return a table cell on the range in which a body's amplification changes by at most the limit.
+
+    It has the last size of the variation within the limit and the first size beyond it, or says NO_EFFECT.
+    """
     if validity.no_effect:
         return NO_EFFECT
     if validity.holds is None:
@@ -173,7 +194,11 @@ def _word_worst(trial: DirectionTrial) -> str:
 
 
 def describe_uneven(found: Validity, scene: Scene) -> list[str]:
-    """Return lines on oval ring, offset and turned bodies: amplification change at FIRST_SIZE in worst direction."""
+    """
+    Return a line each for an oval ring, an offset and turned bodies, as far as they were tried.
+
+    A line says how each body's amplification changes in the worst direction, at the size FIRST_SIZE.
+    """
     lines = []
     for key in DIRECTED:
         trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
@@ -190,7 +215,11 @@ def describe_uneven(found: Validity, scene: Scene) -> list[str]:
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
-    """Return a line: how shortening of loaded bars changes the amplification; none unless computed with and without."""
+    """
+    Return a line on how much the amplification changes if loaded bars also shorten as they sway.
+
+    loaded: results with bars that only soften, then with bars that shorten, too. Without both there is no line.
+    """
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
@@ -204,7 +233,12 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
 
 
 def assumption_lines(found: Validity, scene: Scene) -> list[str]:
-    """Return text below plots: quantities without effect on amplification, worst directions, bar shortening, errors."""
+    """
+    Return the lines of text below a scene's plots.
+
+    They name the varied quantities without effect on the amplification, the changes in the worst directions, the effect
+    of bars that shorten, and errors.
+    """
     blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
     lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
     cells = [cell for cell in found.cells if cell.scene == scene.name]
@@ -214,13 +248,17 @@ def assumption_lines(found: Validity, scene: Scene) -> list[str]:
 
 
 def list_turning_changes(found: Validity, scene: str) -> list[Change]:
-    """Return the change of each body's amplification by rotation of bodies, scene as stated; empty if not computed."""
+    """
+    Return how much each body's amplification changes when the bodies may rotate, in the scene as stated.
+
+    The list is empty if this was not computed.
+    """
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
 
 
 def describe_verdict(found: Validity) -> str:
-    """Return one line: how rotation of bodies, excluded by assumption (vi), changes the amplification, by scene."""
+    """Return a line that says for each scene how rotation, excluded by assumption (vi), changes the amplification."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
         changes = list_turning_changes(found, scene)

@@ -1,4 +1,4 @@
-"""Trials of the assumptions: the engine's two models for a variation, or along the worst direction of one."""
+"""Trials of the assumptions: amplifications of a varied scene by the engine, and the search for worst directions."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ from reference.problem import Scene, SceneError
 from reference.problem.reductions import body_cannot_tilt
 
 DURATION = 6.0  # s, longest duration of motion computed: the loading is strongest in the first seconds
-CHANGE_LIMITS = (0.01, 0.05)  # relative changes of amplification up to which an assumption holds, strict and loose
+CHANGE_LIMITS = (0.01, 0.05)  # an assumption holds up to these relative changes of amplification: strictly, loosely
 SUFFICIENT_ERROR = 0.2 * CHANGE_LIMITS[0]  # relative error of the amplification small enough for these limits
 DIRECTION_PHASES = ((2.0, 0.7),)  # rad, phase pair at which the directions of a variation are compared
 # m/s, slip speed below which friction is linear where the worst direction of a variation is searched
@@ -38,7 +38,13 @@ BISECTION_RATIO = 1.25
 
 @dataclass(frozen=True)
 class Trial:
-    """Amplification mu, error (M, N) at M phase pairs, N bodies; variation None: scene as stated; cost: processor s."""
+    """
+    Amplification of a varied scene, by one of the engine's models.
+
+    variation: None for the scene as stated. mu, error: amplification and its estimated absolute error, (M, N) for M
+    phase pairs and N bodies. status: outcome of each pair. error_message: why the scene was refused, or "". cost:
+    processor time, s.
+    """
 
     variation: Variation | None
     mu: Array
@@ -55,7 +61,11 @@ class Trial:
 
 @result
 class DirectionTrial:
-    """Amplification change in one direction, to find a variation's worst; one phase pair, friction linear to 1 cm/s."""
+    """
+    Change of amplification by a variation in one direction, computed to find the direction with the largest change.
+
+    It is of one phase pair, and of friction that is linear below a slip speed of 1 cm/s.
+    """
 
     scene: Annotated[Text, "name of the scene"]
     key: Annotated[Axis, "what varies"]
@@ -68,20 +78,26 @@ class DirectionTrial:
 
 @dataclass(frozen=True)
 class TaskTrials:
-    """Results of one task: trials of variations, directions tried to find the worst one, and an error message or ""."""
+    """Results of one task: its trials, the directions tried to find the worst one, and an error message or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()
     error_message: str = ""
 
 
-# Arguments of a task: scene; translational, spatial engine; variation, quantities to vary, or None (scene as stated);
-# relative error asked; phase pairs; largest number of sizes to try for each quantity
+# Arguments of a task: the scene; the translational and the spatial model of the engine; one variation, or the
+# quantities to vary in their worst directions, or None for the scene as stated; the relative error asked; the phase
+# pairs; the largest number of sizes to try for each quantity
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
 def answer_trials(task: Arguments) -> TaskTrials:
-    """In a worker, compute amplifications: for one variation, or for sizes of oval, offset, yaw in worst directions."""
+    """
+    Compute the amplifications of one task, in a worker process.
+
+    They are those of the scene as stated, of one variation, or of several sizes of each quantity in its worst
+    direction.
+    """
     scene, (translational, spatial), what, tolerance, phases, sizes = task
     short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # keep its name as key
     pairs = np.array(phases)
@@ -105,26 +121,42 @@ def amplification_of(
     scene: Scene, model: Model, variation: Variation | None, tolerance: float, phases: Array, **settings: object
 ) -> Trial:
     """
-    Return the amplification by a model of the varied scene (None: as stated); settings replace the model's own.
+    Return the amplification of the varied scene by a model.
 
+    variation: None for the scene as stated. settings: keyword arguments in place of the model's own of the same names.
     A variation that makes no valid scene, such as one whose support would carry nothing, has the status "refused".
     """
     try:
         varied = scene if variation is None else variation.of(scene)
     except SceneError as error:
         nothing = np.full((len(phases), len(scene.bodies)), np.nan)
-        return Trial(variation, nothing, nothing, ("refused",) * len(phases), str(error), 0.0)
+        return Trial(
+            variation=variation,
+            mu=nothing,
+            error=nothing,
+            status=("refused",) * len(phases),
+            error_message=str(error),
+            cost=0.0,
+        )
     whole = {"full": True} if body_cannot_tilt(varied) else {}  # do not reduce to translation: it is assumption (vi)
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
     found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
-    return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
+    return Trial(
+        variation=variation,
+        mu=found.mu,
+        error=found.error,
+        status=tuple(map(str, found.status)),
+        error_message="",
+        cost=float(found.cost),
+    )
 
 
 def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
     """
-    Return the change of amplification by varying each quantity in every direction; mark each quantity's `worst`.
+    Return the change of amplification by a variation of each quantity in each of its directions.
 
-    A direction without effect by symmetry is listed and not computed.
+    The direction with the largest change of a quantity is marked as its `worst`. A direction without effect by symmetry
+    is listed and not computed.
     """
     ask = partial(amplification_of, scene, spatial, tolerance=SUFFICIENT_ERROR, phases=np.array(DIRECTION_PHASES),
                   regularization=DIRECTION_V_REG)  # fmt: skip
@@ -140,7 +172,17 @@ def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) ->
                 change, uncertainty = (
                     tuple(rows[0].tolist()) for rows in compute_relative_change(ask(variation=variation), stated)
                 )
-            of_key.append(DirectionTrial(scene.name, key, variation, change, uncertainty, reason, False))
+            of_key.append(
+                DirectionTrial(
+                    scene=scene.name,
+                    key=key,
+                    variation=variation,
+                    change=change,
+                    uncertainty=uncertainty,
+                    no_effect=reason,
+                    worst=False,
+                )
+            )
         telling = [trial for trial in of_key if not trial.no_effect]
         worst = max(telling, key=lambda trial: np.nan_to_num(np.abs(trial.change), nan=np.inf).max(), default=None)
         found += [replace(trial, worst=trial is worst) for trial in of_key]
@@ -166,10 +208,12 @@ def follow_direction(
 
 def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
     """
-    Return the next size of a variation to try, to bracket the sizes at which changes exceed CHANGE_LIMITS; or None.
+    Return the next size of a variation to try, or None if the sizes at which changes exceed CHANGE_LIMITS are known.
 
     tried: sizes, each with the largest change of amplification of every body plus its uncertainty, NaN for no value.
     """
+    # For every body and limit the change is within the limit at the size `holds` and beyond it at `fails`. While one of
+    # the two is not known, sizes are halved or doubled. Then the widest bracket is divided at its geometric mean.
     between, smaller, larger = [], [], []
     for body, share in product(range(len(tried[0][1])), CHANGE_LIMITS):
         fails = min((size for size, change in tried if not change[body] <= share), default=math.inf)
@@ -188,7 +232,11 @@ def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: fl
 
 
 def compute_relative_change(trial: Trial, plain: Trial) -> tuple[Array, Array]:
-    """Return relative change of amplification and its error, (M, N): from the first M pairs of `plain` to `trial`."""
+    """
+    Return the relative change of amplification from `plain` to `trial`, and its uncertainty.
+
+    Both are (M, N): the M phase pairs of `trial`, which are the first of `plain`, and N bodies.
+    """
     base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
 
@@ -198,5 +246,8 @@ def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)
-    lost = (Trial(each, nothing, nothing, statuses, failed.error_message, 0.0) for each in tried)
-    return TaskTrials(tuple(lost), (), failed.error_message)
+    lost = tuple(
+        Trial(variation=each, mu=nothing, error=nothing, status=statuses, error_message=failed.error_message, cost=0.0)
+        for each in tried
+    )
+    return TaskTrials(trials=lost, error_message=failed.error_message)

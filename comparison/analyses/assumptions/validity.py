@@ -1,4 +1,4 @@
-"""The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry."""
+"""The paper's assumptions (i)-(vi): what the engine's models do with each, and in which range each holds."""
 
 import itertools
 import math
@@ -37,15 +37,20 @@ from comparison.study.study import Study
 from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
-# rad, phases of two harmonics; turning bodies change amplification most at the first in scene fig3-I, second in fig3-II
+# rad, phase pairs of a study. Rotation changes the amplification of scene fig3-I most at the first pair, that of
+# fig3-II at the second.
 PHASES = ((0.0, 0.0), (2.0, 0.7))
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # rad, phase pairs of the command `phase-resonance assumptions`
-SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation tried in its worst direction: by a study, by the command
+SIZES, MORE_SIZES = 2, 8  # number of sizes of a variation that a study, or the command, tries in its worst direction
 
 
 @result
 class AssumptionCell:
-    """Change of amplification from translational to spatial model of a varied scene; friction linear below 1 mm/s."""
+    """
+    Change of amplification from the translational model of a scene to the spatial model of the varied scene.
+
+    Both have friction that is linear below a slip speed of 1 mm/s.
+    """
 
     scene: Annotated[Text, "name of the scene"]
     variation: Annotated[Variation, "what is varied"]
@@ -92,10 +97,10 @@ def find_validity_ranges(
     scene: Scene, cells: Sequence[AssumptionCell], directions: Sequence[DirectionTrial] = ()
 ) -> list[ValidityRange]:
     """
-    Return, by body and limit of CHANGE_LIMITS, the range of each quantity in which the amplification stays within it.
+    Return for each quantity, body and limit in CHANGE_LIMITS the range in which the amplification is within the limit.
 
-    All else is as stated, and directions are the worst. cells, directions: those of other scenes are left out. A trial
-    that symmetry makes blind counts for nothing. Ovals, offsets and angles are there only where one was tried.
+    Only this quantity varies, in its worst direction. cells, directions: may hold other scenes, which are left out. A
+    trial whose effect a symmetry makes zero counts for nothing. A quantity that was not tried has no range.
     """
     found, bodies = [], range(1, len(scene.bodies) + 1)
     for key in get_args(Axis):
@@ -111,12 +116,24 @@ def find_validity_ranges(
         direction = direction_of(tried[0].variation, key) if tried and not reason else None
         for body, share in itertools.product(bodies, CHANGE_LIMITS):
             holds, fails, no_value = (None, None, False) if reason else _bracket_share(telling, body, share)
-            found.append(ValidityRange(scene.name, body, share, key, holds, fails, direction, reason, no_value))
+            found.append(
+                ValidityRange(
+                    scene=scene.name,
+                    body=body,
+                    share=share,
+                    key=key,
+                    holds=holds,
+                    fails=fails,
+                    direction=direction,
+                    no_effect=reason,
+                    no_value=no_value,
+                )
+            )
     return found
 
 
 def list_cells_by_size(scene: Scene, cells: Sequence[AssumptionCell], key: Axis) -> list[tuple[float, AssumptionCell]]:
-    """Return size and result of each variation of `key` alone, sorted by rising size, rings by falling radius."""
+    """Return the size and the result of each variation of `key` alone, by rising size; rings by falling radius."""
     as_stated = {key: getattr(Variation(), key), "direction": 0.0}
     alone = [c for c in cells if c.scene == scene.name and replace(c.variation, **as_stated) == Variation()]
     line = [(abs(getattr(cell.variation, key)), cell) for cell in alone]
@@ -131,7 +148,12 @@ def direction_of(variation: Variation, key: Axis) -> float | None:
 
 
 def _bracket_share(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any, bool]:
-    """Return the last size with changes within `share`, the next (beyond or unknown), and whether that is unknown."""
+    """
+    Return the bracket of the size at which a body's change of amplification exceeds `share`.
+
+    It is the last size up to which all changes are within `share` (None without any), the next size, whose change is
+    beyond or not known (None without any), and whether that is not known. line: sizes with their results, in order.
+    """
     held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
     fails, cell = line[len(held)] if len(held) < len(line) else (None, None)
     untold = cell is not None and hides_limit(cell.largest(body), cell.error_estimate(body), share)
@@ -157,59 +179,77 @@ class Assumption:
 # The paper's assumptions (i) to (vi), with what the engine's models do with each, and what would refute it
 ASSUMPTIONS = (
     Assumption(
-        "(i)",
-        "all supports touch the platform along one circle",
-        "The circle stays, its radius and the number of supports are free. In the translational model neither matters, "
-        "because every support sees the same slip and the loads only enter by their sum.",
-        "partly",
-        "another radius or number of supports, or a ring narrowed along its worst direction, that changes mu_i by more "
-        "than 1 %",
+        number="(i)",
+        statement="all supports touch the platform along one circle",
+        engine=(
+            "The circle stays, its radius and the number of supports are free. In the translational model neither "
+            "matters, because every support sees the same slip and the loads only enter by their sum."
+        ),
+        relaxed="partly",
+        falsified_by=(
+            "another radius or number of supports, or a ring narrowed along its worst direction, that changes mu_i by "
+            "more than 1 %"
+        ),
     ),
     Assumption(
-        "(ii)",
-        "the centers of mass lie on one axis through the center of the circle",
-        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
-        "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies turn "
-        "about it. The heights above the contacts, which the paper's equations do not contain, are free.",
-        "yes",
-        "centers of mass off the axis, in their worst direction, that change mu_i by more than 1 %",
+        number="(ii)",
+        statement="the centers of mass lie on one axis through the center of the circle",
+        engine=(
+            "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+            "the offset of a center of mass or positions of supports: links stand on the axis, so eccentric bodies "
+            "turn about it. The heights above the contacts, which the paper's equations do not contain, are free."
+        ),
+        relaxed="yes",
+        falsified_by="centers of mass off the axis, in their worst direction, that change mu_i by more than 1 %",
     ),
     Assumption(
-        "(iii)",
-        "the principal axes of inertia of all bodies are parallel",
-        "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
-        "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, which "
-        "do not enter translation, follow from masses and sizes.",
-        "yes",
-        "bodies and links turned about the vertical that change mu_i by more than 1 %",
+        number="(iii)",
+        statement="the principal axes of inertia of all bodies are parallel",
+        engine=(
+            "Kept by the equations and the translational model. Dropped in the spatial model where a scene states "
+            "the yaw of a body: its box and the directions of its link's stiffness are turned. Moments of inertia, "
+            "which do not enter translation, follow from masses and sizes."
+        ),
+        relaxed="yes",
+        falsified_by="bodies and links turned about the vertical that change mu_i by more than 1 %",
     ),
     Assumption(
-        "(iv)",
-        "flexible bars that neither stretch nor move vertically",
-        "Bars stretch by 1e-5 rho under the weight of all bodies and bend by as much, so that every body has its own "
-        "vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of the "
-        "pendulum, and become softer by the weight. The spatial model has both where a scene states the "
-        "axial stiffness of its bars; else it is the weakest assumption of the study.",
-        "partly",
-        "bars that shorten as they sway and change mu_i by more than 1 %: tried only where a scene states their axial "
-        "stiffness",
+        number="(iv)",
+        statement="flexible bars that neither stretch nor move vertically",
+        engine=(
+            "Bars stretch by 1e-5 rho under the weight of all bodies and bend by as much, so that every body has its "
+            "own vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of "
+            "the pendulum, and become softer by the weight. The spatial model has both where a scene states the axial "
+            "stiffness of its bars; else it is the weakest assumption of the study."
+        ),
+        relaxed="partly",
+        falsified_by=(
+            "bars that shorten as they sway and change mu_i by more than 1 %: tried only where a scene states their "
+            "axial stiffness"
+        ),
     ),
     Assumption(
-        "(v)",
-        "friction acts at the contacts of supports and depressions only",
-        "Kept, but every support has a contact force and a slip velocity of its own, so that friction can twist the "
-        "platform. The balls stand still on the plate, as in the paper.",
-        "partly",
-        "friction elsewhere that changes mu_i: not tried, no model has it",
+        number="(v)",
+        statement="friction acts at the contacts of supports and depressions only",
+        engine=(
+            "Kept, but every support has a contact force and a slip velocity of its own, so that friction can twist "
+            "the platform. The balls stand still on the plate, as in the paper."
+        ),
+        relaxed="partly",
+        falsified_by="friction elsewhere that changes mu_i: not tried, no model has it",
     ),
     Assumption(
-        "(vi)",
-        "the bodies move translationally",
-        "Dropped: six degrees of freedom for every body, contacts that open. What this changes grows with the heights "
-        "over the radius of the ring. With all heights zero the weight of the bodies above the platform still shifts "
-        "with their displacement, and friction twists the platform.",
-        "yes",
-        "mu_i of the spatial model, at the stated ring and heights, more than 1 % from the translational one",
+        number="(vi)",
+        statement="the bodies move translationally",
+        engine=(
+            "Dropped: six degrees of freedom for every body, contacts that open. What this changes grows with the "
+            "heights over the radius of the ring. With all heights zero the weight of the bodies above the platform "
+            "still shifts with their displacement, and friction twists the platform."
+        ),
+        relaxed="yes",
+        falsified_by=(
+            "mu_i of the spatial model, at the stated ring and heights, more than 1 % from the translational one"
+        ),
     ),
 )
 
@@ -233,6 +273,8 @@ class Assumptions(MappedAnalysis[Validity]):
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)
+    # variations: those to compute. phases: pairs at which to compute them, rad. sizes: largest number of sizes in a
+    # worst direction. directed: groups of quantities to vary in their worst directions, one task for each group.
     variations: Sequence[Variation] = FEW
     phases: tuple[Phases, ...] = PHASES
     sizes: int = SIZES
@@ -240,10 +282,11 @@ class Assumptions(MappedAnalysis[Validity]):
 
     def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
-        Yield task arguments in harmonic scenes with a spatial model: one task per variation or group of varied axes.
+        Yield the arguments of the tasks of each scene that has two frequencies and a spatial model.
 
-        First None, the translational model of the scene itself, then the variations of the spatial one, then groups of
-        axes along whose worst direction sizes are tried: one task each. UNDER_LOAD is added where bars give way.
+        The first task is the scene as stated by the translational model (None). One task for each variation by the
+        spatial model follows, among them UNDER_LOAD where bodies stand on bars. The last tasks are groups of
+        quantities, of which several sizes are tried in the worst direction.
         """
         for scene in study.phased:
             models = models_of(scene, study.hierarchy)
@@ -258,7 +301,7 @@ class Assumptions(MappedAnalysis[Validity]):
                 yield scene, (translational, spatial), what, tolerance, self.phases, self.sizes
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
-        """Return each variation's amplification change, and validity ranges; None if no scene has a spatial model."""
+        """Return the changes of amplification and the ranges of validity; None if no scene has a spatial model."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)
@@ -274,14 +317,33 @@ class Assumptions(MappedAnalysis[Validity]):
             validity for scene in study.scenes for validity in find_validity_ranges(scene, cells, directions)
         )
         duration = min(DURATION, max(scene.duration for scene in study.scenes))
-        return Validity(ASSUMPTIONS, AS_INTEGRATED, self.phases, duration, tuple(cells), tuple(directions), within)
+        return Validity(
+            assumptions=ASSUMPTIONS,
+            reading=AS_INTEGRATED,
+            phases=self.phases,
+            duration=duration,
+            cells=tuple(cells),
+            directions=tuple(directions),
+            ranges=within,
+        )
 
 
 def _make_cell(scene: Scene, trial: Trial, plain: Trial) -> AssumptionCell:
-    """Return the change of amplification from `plain` (translational model) to `trial`; if symmetry makes it 0, why."""
+    """
+    Return the change of amplification from the translational model, `plain`, to a trial of the spatial one.
+
+    If symmetry makes the change zero and it is within its uncertainty, the result says why.
+    """
     assert trial.variation is not None, "only the translational model has none"
     change, uncertainty = compute_relative_change(trial, plain)
     blind = blind_by_symmetry(scene, trial.variation) if (np.abs(change) <= uncertainty).all() else ""
-    rows = tuple(map(tuple, change.tolist())), tuple(map(tuple, uncertainty.tolist()))
-    message = trial.error_message or plain.error_message
-    return AssumptionCell(scene.name, trial.variation, *rows, trial.status, message, trial.cost, blind)
+    return AssumptionCell(
+        scene=scene.name,
+        variation=trial.variation,
+        change=tuple(map(tuple, change.tolist())),
+        uncertainty=tuple(map(tuple, uncertainty.tolist())),
+        status=trial.status,
+        error_message=trial.error_message or plain.error_message,
+        cost=trial.cost,
+        no_effect=blind,
+    )

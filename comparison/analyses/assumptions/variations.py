@@ -1,4 +1,4 @@
-"""Variations that test the paper's assumptions, their directions, and cases in which symmetry hides the effect."""
+"""Variations of a scene that test the paper's assumptions, and the symmetries that make one without effect."""
 
 import itertools
 import math
@@ -119,7 +119,11 @@ def trials_of(scene: Scene, key: Axis) -> list[Variation]:
 
 
 def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
-    """Return why symmetry makes the amplifications by both engine models equal, spatial and translational; else ""."""
+    """
+    Return why symmetry makes a variation useless as a test, or "".
+
+    With such a symmetry the spatial and the translational model have equal amplifications.
+    """
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
         return ""  # Bars that bend tilt the body on them, even in plane motion: no symmetry.
     if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):

@@ -44,7 +44,8 @@ SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # m/s, regularization speeds of the friction law
 YIELDS = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)  # m, yield displacements in addition to the scene's own
 MAX_YIELDING_GRID = 8  # largest number of phases per axis, for exact equations with elastic-plastic friction
-OTHER_DAMPING = 0.05  # damping ratio of links in an undamped scene's second curve over yield displacement; else 0 there
+# Damping ratio of links in a second computation over the yield displacement, where the scene has none; else that is 0
+OTHER_DAMPING = 0.05
 # rad, phase pairs for the engine and the exact equations; no symmetry makes two of them equivalent
 ENGINE_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])
 ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harmonic: in these the loading is strongest
@@ -52,7 +53,11 @@ ENGINE_PERIODS = 3.0  # duration at ENGINE_PHASES, in periods of the slower harm
 
 @result
 class ConditioningCurve:
-    """Statistics over phases of a body's amplification at slip speeds or yield displacements v; 0: rigid, slip -> 0."""
+    """
+    Statistics over the phases of a body's amplification, at each of several slip speeds or yield displacements `v`.
+
+    A curve with the single v = 0 is that of rigid friction in the limit of zero slip speed.
+    """
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -103,12 +108,12 @@ class Question(NamedTuple):
 
     model: str
     base: Mapping[str, Any]  # settings of the equations whose limit at zero slip speed the curve is relative to
-    side: ModuleType
-    settings: Mapping[str, Any]
+    side: ModuleType  # package whose amplification() answers: reference or multibody
+    settings: Mapping[str, Any]  # keyword arguments of that amplification()
     argument: Literal["cutoff", "regularization", "yield_displacement"]
-    speeds: tuple[float, ...]
+    speeds: tuple[float, ...]  # values of `argument`, m/s or m
     max_grid: int
-    applies: Callable[[Scene], bool] = has_dry_friction
+    applies: Callable[[Scene], bool] = has_dry_friction  # scenes that are asked
     otherwise: bool = False
 
     def speeds_of(self, scene: Scene) -> tuple[float, ...]:
@@ -133,33 +138,62 @@ class Question(NamedTuple):
         return scene.with_values(links | {"name": scene.name})
 
     def choose_grid(self, study: Study) -> int:
-        """Return the phases per axis: largest nested grid of the study's up to `max_grid`; without any, `max_grid`."""
+        """
+        Return the number of phases per axis of the grid on which the model answers.
+
+        It is that of the largest grid nested in the study's with at most `max_grid` phases; without any, `max_grid`.
+        """
         affordable = (each for each in nested_grids(study.grid) if each <= self.max_grid)
         return max(affordable, default=self.max_grid)
 
     def answer(self, scene: Scene, phases: Array, speed: float) -> Any:
-        """Return amplification at phases (P, 2), rad; speed: cutoff, regularization, m/s, or yield displacement, m."""
+        """Return the amplification at `phases` (P, 2), rad, with the value `speed`, m/s or m, of `argument`."""
         if self.argument == "yield_displacement":
             return self.side.amplification(scene.with_yield_displacement(speed), phases, **self.settings)
         return self.side.amplification(scene, phases, **self.settings, **{self.argument: speed})
 
 
-# Keyword arguments of reference.amplification() for small-vibration equations; below, those for the other models
+# Keyword arguments of reference.amplification(): small-vibration equations, exact ones, and exact ones with a looser
+# tolerance for friction that yields
 SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
-EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}  # keyword arguments of reference.amplification()
-YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}  # as EXACT, elastic-plastic friction, looser tolerance
-TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}  # for multibody.amplification
-SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}  # keyword arguments of multibody.amplification()
-OVER_YIELDS = Question(  # how the amplification depends on the yield displacement of friction: exact equations
-    "exact", EXACT, reference, YIELDING, "yield_displacement", YIELDS, MAX_YIELDING_GRID, has_yielding_friction
+EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
+YIELDING = {"equations": "exact", "tolerance": STUDY_TOLERANCE}
+# Keyword arguments of multibody.amplification(): the engine's models without and with rotations
+TRANSLATIONAL_SETTINGS = {"model": "translational", "tolerance": STUDY_TOLERANCE}
+SPATIAL_SETTINGS = {"model": "spatial", "tolerance": STUDY_TOLERANCE}
+# How the amplification by the small or exact equations depends on the cutoff speed
+SMALL_OVER_CUTOFF = Question(
+    model="small", base=SMALL, side=reference, settings=SMALL, argument="cutoff", speeds=SPEEDS, max_grid=MAX_GRID
 )
-# Models, and slip speeds or yield displacements at which to compare them with rigid friction at slip speed -> 0
+EXACT_OVER_CUTOFF = SMALL_OVER_CUTOFF._replace(model="exact", base=EXACT, settings=EXACT, max_grid=0)
+# How the amplification by the engine's translational model depends on its regularization speed
+TRANSLATIONAL_OVER_REGULARIZATION = Question(
+    model="translational",
+    base=EXACT,
+    side=multibody,
+    settings=TRANSLATIONAL_SETTINGS,
+    argument="regularization",
+    speeds=REGULARIZATIONS,
+    max_grid=0,
+)
+# How the amplification by the exact equations depends on the yield displacement of friction
+OVER_YIELDS = Question(
+    model="exact",
+    base=EXACT,
+    side=reference,
+    settings=YIELDING,
+    argument="yield_displacement",
+    speeds=YIELDS,
+    max_grid=MAX_YIELDING_GRID,
+    applies=has_yielding_friction,
+)
+# All questions that a study asks, of every scene to which they apply
 QUESTIONS = (
-    Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, MAX_GRID),
-    Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, MAX_GRID),
-    Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, 0),
-    Question("translational", EXACT, multibody, TRANSLATIONAL_SETTINGS, "regularization", REGULARIZATIONS, 0),
-    Question("spatial", EXACT, multibody, SPATIAL_SETTINGS, "regularization", REGULARIZATIONS, 0, moves_in_space),
+    SMALL_OVER_CUTOFF,
+    SMALL_OVER_CUTOFF._replace(argument="regularization", speeds=REGULARIZATIONS),
+    EXACT_OVER_CUTOFF,
+    TRANSLATIONAL_OVER_REGULARIZATION,
+    TRANSLATIONAL_OVER_REGULARIZATION._replace(model="spatial", settings=SPATIAL_SETTINGS, applies=moves_in_space),
     OVER_YIELDS,
     OVER_YIELDS._replace(applies=has_yielding_friction_below_links, otherwise=True),
 )
@@ -170,15 +204,17 @@ SYMBOLS: Mapping[str, Literal["v_c", "v_reg", "u_y"]] = {
     "yield_displacement": "u_y",
 }
 
-Arguments = tuple[Scene, int, int]  # task: scene, index in QUESTIONS, phases per axis (0: ENGINE_PHASES)
+# Arguments of a task: scene, index in QUESTIONS, number of phases per axis (0 for the pairs ENGINE_PHASES)
+Arguments = tuple[Scene, int, int]
 
 
 class _Answers(NamedTuple):
     """
-    Amplification mu and error, (S, P, N): S slip speeds or yield displacements, P phase pairs, N bodies.
+    Amplification of a scene at several slip speeds or yield displacements.
 
-    supremum: (P, N), mu by rigid friction in the limit of zero slip speed. independent: pairs with a value that no
-    symmetry relates. lost: the first status without a value.
+    mu, error: (S, P, N), the amplification and its error at S speeds or displacements, P phase pairs, for N bodies.
+    supremum, supremum_error: (P, N), the same of rigid friction in the limit of zero slip speed. phases: (P, 2), rad.
+    independent: number of pairs with a value that no symmetry relates. lost: the first status without a value, or "".
     """
 
     mu: Array
@@ -203,7 +239,11 @@ class _SpeedStatistics(NamedTuple):
 
 
 def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
-    """Return bodies' curves over v_reg, or over cutoff or yield displacement and for rigid friction, slip -> 0."""
+    """
+    Return for each body its amplification over the speeds, or yield displacements, of one question.
+
+    Where these are no regularization speeds, a curve of rigid friction in the limit of zero slip speed is added.
+    """
     scene, number, grid = task
     question = QUESTIONS[number]
     speeds, moving = question.speeds_of(scene), scene if grid else shorten_scene(scene, ENGINE_PERIODS)
@@ -216,7 +256,11 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 
 def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], grid: int) -> _Answers:
-    """Return amplifications at `speeds` and for rigid friction, slip -> 0; NaN at phase pairs where one is missing."""
+    """
+    Return the amplifications at each of `speeds`, and of rigid friction in the limit of zero slip speed.
+
+    A phase pair where one of these has no value is NaN at all of them, so that their means are of the same pairs.
+    """
     phases, taken = distinct_pairs(moving, grid) if grid else (ENGINE_PHASES, np.arange(len(ENGINE_PHASES)))
     supremum = reference.amplification(moving.with_yield_displacement(0.0), phases, **question.base)
     listed = [question.answer(moving, phases, speed) for speed in speeds]
@@ -227,14 +271,18 @@ def _ask_at_speeds(moving: Scene, question: Question, speeds: Sequence[float], g
     statuses = [str(status) for each in (supremum, *listed) for status in each.status]
     places = taken.ravel()
     return _Answers(
-        mu[:, places], error[:, places], supremum.mu[places], supremum.error[places],
-        phase_grid(grid) if grid else ENGINE_PHASES, int(complete.sum()),
-        next((status for status in statuses if not status.startswith(Outcome.OK)), ""),
-    )  # fmt: skip
+        mu=mu[:, places],
+        error=error[:, places],
+        supremum=supremum.mu[places],
+        supremum_error=supremum.error[places],
+        phases=phase_grid(grid) if grid else ENGINE_PHASES,
+        independent=int(complete.sum()),
+        lost=next((status for status in statuses if not status.startswith(Outcome.OK)), ""),
+    )
 
 
 def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
-    """Return a body's curve: statistics over phases of its amplification, also relative to `answers.supremum`."""
+    """Return the curve of a body, with statistics over the phases of its amplification at each of `speeds`."""
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -249,7 +297,12 @@ def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: 
 def _statistics_at_speed(
     mu: Array, error: Array, over_supremum: Array, over_supremum_error: Array, answers: _Answers, grid: int
 ) -> _SpeedStatistics:
-    """Return statistics over P phase pairs of a body's mu, (P,), and over_supremum, mu / (limit for slip -> 0) - 1."""
+    """
+    Return the statistics of a body's amplification over P phase pairs at one slip speed or yield displacement.
+
+    mu, error: (P,). over_supremum, over_supremum_error: (P,), relative difference of mu from the amplification by rigid
+    friction in the limit of zero slip speed, and its error. grid: phases per axis, 0 for listed pairs.
+    """
     known = np.isfinite(mu)
     if not known.any():
         return _SpeedStatistics()
@@ -278,7 +331,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
 def _fill_curve(
     task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
-    """Return a body's amplification curve. rows: statistics over phases at each of `speeds`. reason: why no value."""
+    """Return a body's curve of statistics. rows: these at each of `speeds`. reason: why there is no value, or ""."""
     scene, number, grid = task
     question = QUESTIONS[number]
     columns: dict[str, Any] = dict(zip(_SpeedStatistics._fields, zip(*rows)))
@@ -301,14 +354,14 @@ def _fill_curve(
 
 
 class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
-    """Analysis of how amplification depends on the smallest resolved slip speed; harmonic scenes, dry friction only."""
+    """Analysis of how amplification depends on the smallest slip speed resolved, in scenes with dry friction."""
 
     key, stage = "conditioning", "conditioning"
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return for each task: scene, index in QUESTIONS, number of phases per axis (0: only pairs ENGINE_PHASES)."""
+        """Return the arguments of each task: one for every scene and every question that applies to it."""
         return [
             (scene, number, question.choose_grid(study))
             for scene in study.phased

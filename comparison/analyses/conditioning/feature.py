@@ -1,4 +1,4 @@
-"""The conditioning of the amplification mu_i over the smallest resolved speed: in the report."""
+"""The report section on how the amplification mu_i depends on the smallest slip speed that is resolved."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -7,6 +7,7 @@ from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, Cond
 from comparison.analyses.conditioning.statement import conditioning_line, name_damping, speed_text, yielding_line
 from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import Panel, make_panel, replace_nan
+from comparison.report.results import Results
 from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM
@@ -26,7 +27,12 @@ QUANTITIES = {"mean": "mean", "largest": "largest", "relative_mean": "mean from 
 
 
 def conditioning_panels(curves: Sequence[ConditioningCurve]) -> list[Panel]:
-    """Return plots per scene: platform amplification over slip speed (equations; engine), over yield displacement."""
+    """
+    Return up to three plots of the platform's amplification for each scene.
+
+    They are over the slip speed by the small equations on a grid, over the slip speed by all models at a few phase
+    pairs, and over the yield displacement.
+    """
     panels = []
     for scene in dict.fromkeys(curve.scene for curve in curves):
         every = [curve for curve in curves if (curve.scene, curve.body) == (scene, 1) and curve.pairs]
@@ -57,7 +63,11 @@ def _speed_panel(title: str, quantity: str, series: list[dict[str, Any]]) -> Pan
 
 
 def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
-    """Plot mean and largest amplification mu_1 over yield displacement; horizontal: rigid friction, slip speed -> 0."""
+    """
+    Return a plot of the mean and largest amplification mu_1 over the yield displacement.
+
+    Horizontal lines are the values of rigid friction in the limit of zero slip speed.
+    """
     dampings = [*dict.fromkeys(curve.damping for curve in curves)]
     series: list[dict[str, Any]] = []
     ends = [f(v for curve in curves for v in curve.v if v) for f in (min, max)]
@@ -76,7 +86,11 @@ def _yield_panel(title: str, curves: Sequence[ConditioningCurve]) -> Panel:
 
 
 def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) -> dict[str, Any]:
-    """Return the line of an amplification statistic over cutoff or regularization speed; dashed: its limit at zero."""
+    """
+    Return one line of a plot: a statistic of the amplification over the cutoff or regularization speed.
+
+    That of the literal supremum, the limit at zero speed, is horizontal and dashed.
+    """
     values = replace_nan(getattr(curve, quantity))
     named = {"name": f"{name}, {_name_reading(curve)}", "color": color}
     if curve.reading == LITERAL_SUPREMUM:
@@ -85,12 +99,16 @@ def _speed_line(curve: ConditioningCurve, quantity: str, name: str, color: int) 
 
 
 def _name_reading(curve: ConditioningCurve) -> str:
-    """Name the peaks that count in a curve: at any slip speed ("literal supremum"), or "as integrated at v_c" etc."""
+    """Name the peaks that count: at any slip speed ("literal supremum"), or only at resolved ones ("as integrated")."""
     return curve.reading if curve.reading == LITERAL_SUPREMUM else f"{curve.reading} at {curve.speed}"
 
 
 def conditioning_tables(curves: Sequence[ConditioningCurve]) -> list[dict[str, Any]]:
-    """Return amplification tables, one for curves at equal speeds or yield displacements; last: rigid, slip -> 0."""
+    """
+    Return tables of amplification statistics, one for all curves at the same speeds or yield displacements.
+
+    Their last column is rigid friction in the limit of zero slip speed.
+    """
     suprema = {_owner_of_curve(curve): curve for curve in curves if curve.reading == LITERAL_SUPREMUM}
     tables = []
     integrated = [curve for curve in curves if curve.reading != LITERAL_SUPREMUM]
@@ -111,12 +129,16 @@ def _place_of_table(table: tuple[str, tuple[float, ...]]) -> int:
 
 
 def _owner_of_curve(curve: ConditioningCurve, model: str = "") -> tuple[str, int, str, int, float | None]:
-    """Return the key (scene, body, model, grid, damping) that pairs a curve with that of rigid friction, slip -> 0."""
+    """Return (scene, body, model, grid, damping), equal for a curve and for its limit, the literal supremum."""
     return curve.scene, curve.body, model or curve.model, curve.grid, curve.damping
 
 
 def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | None) -> dict[str, Any]:
-    """Return a table row: an amplification statistic at each speed or displacement, then, if known, at slip -> 0."""
+    """
+    Return a table row: a statistic of the amplification at each speed or yield displacement.
+
+    The last cell is the same statistic of `supremum`, empty without it.
+    """
     write = signed if quantity == "relative_mean" else significant
     values = [*getattr(curve, quantity), *([] if supremum is None else getattr(supremum, quantity))]
     errors = getattr(curve, quantity.removesuffix("_mean") + "_error")
@@ -130,10 +152,10 @@ def _table_row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCu
     }
 
 
-FOUND = ResultField(  # field of summary.json: amplification by smallest slip speed that counts, and limit at zero speed
-    Conditioning.key,
-    list[ConditioningCurve],
-    "mu over the smallest resolved speed, and its literal supremum; null if not computed",
+FOUND = ResultField(  # field of summary.json with the result of this analysis
+    name=Conditioning.key,
+    kind=list[ConditioningCurve],
+    meaning="mu over the smallest resolved speed, and its literal supremum; null if not computed",
 )
 
 
@@ -146,17 +168,21 @@ def _section_context(report: Report) -> Mapping[str, Any]:
     }
 
 
+def _write_lead(results: Results) -> str:
+    """Return the sentences on the conditioning of the amplification for the first screen of the report."""
+    curves = FOUND.read_from(results)
+    return f"{conditioning_line(curves)} {yielding_line(curves)}".strip()
+
+
 # Registration of this analysis with the program: field of summary.json, computation, section of the report
 FEATURE = Feature(
-    Conditioning.key,
-    (FOUND,),
+    key=Conditioning.key,
+    fields=(FOUND,),
     analysis=Conditioning(),
     section=Section(
-        "Conditioning of the literal supremum",
-        "phase-resonance run makes it, of scenes with phases and dry friction",
-        _section_context,
-        lead=lambda results: (
-            f"{conditioning_line(FOUND.read_from(results))} {yielding_line(FOUND.read_from(results))}".strip()
-        ),
+        title="Conditioning of the literal supremum",
+        absent="phase-resonance run makes it, of scenes with phases and dry friction",
+        context=_section_context,
+        lead=_write_lead,
     ),
 )

@@ -1,4 +1,4 @@
-"""The conditioning of amplification mu_i in one sentence, and what a yield displacement makes of mu_1 in another."""
+"""Sentences on how amplification mu_i depends on the smallest slip speed that counts, and on a yield displacement."""
 
 import math
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from comparison.analyses.conditioning.analysis import ConditioningCurve
 from comparison.wording import word_difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
 
-# m/s, sliding speeds below which no instrument (first) and no computation (second) resolves sliding
+# m/s, speeds below which no instrument (the first) and no computation (the second) resolves sliding
 LOW_V_C, LOWEST_V_C = 1e-6, 1e-12
 ILL_CONDITIONED_CHANGE = 1e-3  # amplification is ill-conditioned if slip below LOW_V_C changes it by this share
 MODEL_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}  # Exudyn's models in words
@@ -17,8 +17,8 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
     Return a sentence on the scene and body whose amplification changes most if sliding slower than LOW_V_C counts, too.
 
-    Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
-    front; their errors contain that of sampling.
+    It is empty without a scene that has phases and dry friction. The sizes in it are relative to the literal supremum,
+    and their errors contain that of sampling.
     """
     found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _reaches_deepest_speed(curve)]
     if not found:
@@ -41,10 +41,10 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
     """
-    Return sentences on scenes with a yield displacement: amplification mu_1 at it, and range over other values.
+    Return sentences on the amplification mu_1 of scenes with a yield displacement, at this and at other values of it.
 
-    Empty without such a scene. Sizes of the mean are relative to the literal supremum of rigid friction at the same
-    phases.
+    They are empty without such a scene. The sizes in them are relative to the literal supremum of rigid friction at the
+    same phases.
     """
     lines = []
     for scene in dict.fromkeys(curve.scene for curve in result or () if curve.speed == "u_y"):
@@ -57,7 +57,7 @@ def yielding_line(result: Sequence[ConditioningCurve] | None) -> str:
 
 
 def _word_yielding(curve: ConditioningCurve) -> str:
-    """Return a sentence: amplification mu_1 at the scene's own yield displacement, and its range over other values."""
+    """Return a sentence on the amplification mu_1 at the scene's own yield displacement, and its range over others."""
     assert curve.own is not None
     place = curve.v.index(curve.own)
     mean, largest = (
@@ -73,12 +73,12 @@ def _word_yielding(curve: ConditioningCurve) -> str:
 
 
 def _word_other_damping(curve: ConditioningCurve) -> str:
-    """Return a sentence: range of the mean amplification over yield displacements with another damping of the links."""
+    """Return a sentence on the range of mean amplification over yield displacements with other damping of the links."""
     return f"With {name_damping(curve)}, {_word_range(curve)}."
 
 
 def _word_range(curve: ConditioningCurve) -> str:
-    """Word the mean amplification's range over yield displacements, relative to rigid friction, slip speed -> 0."""
+    """Return in words the range of the mean amplification over yield displacements, relative to rigid friction."""
     low, high = (f(range(len(curve.v)), key=lambda place: curve.relative_mean[place]) for f in (min, max))
     least, most = (_write_size(curve.relative_mean[place], curve.relative_error[place]) for place in (low, high))
     return (
@@ -116,7 +116,7 @@ def _reaches_deepest_speed(curve: ConditioningCurve) -> bool:
 
 
 def _relative_mean_at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
-    """Return the mean relative difference of amplification at cutoff `speed`, m/s, from its limit at 0; and error."""
+    """Return the mean relative difference of the amplification at cutoff `speed` from its limit at 0, and its error."""
     place = curve.v.index(speed)
     return curve.relative_mean[place], curve.relative_error[place]
 
@@ -141,7 +141,7 @@ def _word_engine_change(curve: ConditioningCurve, result: Sequence[ConditioningC
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
-    """Return the mean amplification's relative change from a curve's second lowest slip speed to the lowest; error."""
+    """Return the relative change of the mean from the second lowest slip speed to the lowest, and its error."""
     (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
     return after / before - 1.0, sum(errors) / before
 

@@ -1,1 +1,1 @@
-"""Demands over all phases."""
+"""Demands on the building, such as peak displacement and base shear, over all phases."""

@@ -30,7 +30,7 @@ from reference.problem.phases import phase_axis
 MOTIONS_PER_TASK = {"reference": 32, "engine": 4}  # motions per task: as many as a program computes in 2 s
 VARIABLE_PREFIX = "demand_"  # prefix of the variables of demands in surfaces.nc
 
-# arguments of a task: scene, model, relative error that is aimed at, phase pairs (M, 2) in rad
+# Arguments of a task: scene, model, relative error that is aimed at, phase pairs (M, 2) in rad
 DemandTaskArguments = tuple[Scene, Model, float, Array]
 TaskDemands = tuple[dict[str, Estimates], list[str]]  # demands by name, and outcome of each motion
 
@@ -94,15 +94,15 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
         """
-        Return the demands of all tasks, a dataset with the dimensions scene, model, body, alpha1, alpha2.
+        Return the demands of all tasks as a dataset with the dimensions scene, model, body, alpha1, alpha2.
 
-        Its variables are named by fields of `Demands`; their estimated absolute errors end in "_error". `status`
-        names the outcome of each pair.
+        Its variables have the names of the fields of `Demands`, and their estimated absolute errors end in "_error".
+        The variable `status` names the outcome of each phase pair.
         """
         names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
         bodies, grid = max(len(scene.bodies) for scene in study.scenes), study.grid
         status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
-        numbers: dict[str, Array] = {}
+        numbers: dict[str, Array] = {}  # by variable: (scene, model, body, index in the flattened grid of phases)
         answers = self.values(study, surfaces, results)
         for (scene, model, places), (estimated, outcomes) in zip(_list_task_motions(study), answers, strict=True):
             where = names.index(scene.name), models.index(model.key)
@@ -131,7 +131,11 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _models_with_own_motions(study: Study, scene: Scene) -> list[Model]:
-    """Return models with motions to compute: no user's, none that just counts other peaks, no SMALL_REGULARIZED."""
+    """
+    Return the models whose motions are computed.
+
+    Left out are a user's models, models that differ from another only in which peaks count, and SMALL_REGULARIZED.
+    """
     models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
     return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 
@@ -174,7 +178,7 @@ def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) ->
 def _statistics_of_demand(
     study: Study, demands: xr.Dataset, scene: Scene, model: Model, name: str, body: int
 ) -> Iterator[DemandStatistics]:
-    """Yield mean, fractiles and extremes of a demand over the phase pairs; body: 0 for the isolator."""
+    """Yield the statistics of a demand over the phase pairs, or nothing without a value. body: 0 for the isolator."""
     place = {"scene": scene.name, "model": model.key} | ({"body": body} if body else {})
     axis = study.phase_indices(model, scene)
     value, error = (np.asarray(demands[key].sel(place), float)[np.ix_(axis, axis)] for key in (name, f"{name}_error"))

@@ -4,18 +4,25 @@ from collections.abc import Mapping
 from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics, with_demands
-from comparison.report.feature import Feature, SceneField
+from comparison.report.feature import Feature, Findings, SceneField
 from comparison.report.panels import PLOTTED_DEMANDS, Panel, make_distribution_panels
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
 from reference.measures.peak_demands import QUANTITIES, unit_of
+from reference.problem import Scene
+
+
+def _statistics_of_scene(findings: Findings, scene: Scene) -> list[DemandStatistics]:
+    """Return the statistics of each demand of a scene, from the demand surfaces that a study found."""
+    return demand_statistics(findings.study, findings.found.get(DemandSurfaces.key), scene)
+
 
 STATISTICS = SceneField(  # field of summary.json on each scene: statistics of its demands
-    "demand_statistics",
-    list[DemandStatistics],
-    "one per demand, body and model; empty unless demands of every phase pair were asked for",
-    lambda findings, scene: demand_statistics(findings.study, findings.found.get(DemandSurfaces.key), scene),
+    name="demand_statistics",
+    kind=list[DemandStatistics],
+    meaning="one per demand, body and model; empty unless demands of every phase pair were asked for",
+    compute=_statistics_of_scene,
 )
 
 
@@ -33,7 +40,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
 
 
 def demand_lines(results: Results) -> list[dict[str, Any]]:
-    """Return a table row of statistics for each scene, demand and model, demand and model named in words."""
+    """Return a table row of statistics for each scene, demand and model. Demand and model are named in words."""
     lines = []
     for scene in results.scenes:
         for row in STATISTICS.read_from(scene):
@@ -55,7 +62,7 @@ def _section_context(report: Report) -> Mapping[str, Any]:
 
 # Registration of this analysis with the program: field of summary.json, computation, dataset, section of the report
 FEATURE = Feature(
-    DemandSurfaces.key,
+    key=DemandSurfaces.key,
     scene_fields=(STATISTICS,),
     analysis=DemandSurfaces(),
     on_request=True,

@@ -1,1 +1,1 @@
-"""Demands under a suite of motions at many intensities."""
+"""Demands on buildings under a suite of recorded motions, each at several scale factors."""

@@ -1,4 +1,4 @@
-"""Demands of structures under many motions at many intensities (incremental dynamic analysis), by both sides."""
+"""Demands of structures under many motions at several scales (incremental dynamic analysis), by several models."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -29,14 +29,18 @@ STAGE = "ensemble"  # name under which the terminal shows the progress of these 
 NO_PHASES = (0.0, 0.0)  # rad, phases passed to a model under a recorded motion, which has no phases
 SPECTRA_COST_RATIO = 1.7  # processor time of a motion with floor spectra, divided by the time without
 MOTION_TIME_LIMIT = 900.0  # s, processor time after which the computation of a motion is ended
-ENGINE_TOLERANCE = (
-    1e-2  # relative error asked of the engine's largest accelerations: much less than motions differ from each other
-)
+# Relative error asked of the engine's largest accelerations: much less than motions differ from each other
+ENGINE_TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
 class MotionDemandsAtScale:
-    """Demands of one motion at one scale by one model; values: NaN or empty if the run ended early or failed."""
+    """
+    Demands of one motion at one scale by one model.
+
+    status: outcome of the run. values: the demands by name and body, NaN or missing if the run ended early or failed.
+    spectra, forces: floor spectra, and story and support forces, of the motion, or None.
+    """
 
     member: EnsembleMember
     model: str  # key of the model
@@ -71,7 +75,8 @@ class EnsemblePoints:
 
 
 MotionTaskArguments = tuple[Scene, Model, float]  # scene with its motion, model, relative error to aim at
-# Task's demands, story forces, floor spectra, peak accelerations without slip below 1 mm/s (or empty), motion's end, s
+# Result of a task: demands; story forces; floor spectra or None; peak accelerations by body without those during slip
+# below 1 mm/s, or empty; time at which the motion ended, s
 MotionAnswer = tuple[Demands, StoryForces, FloorSpectra | None, Sequence[Estimate], float]
 
 
@@ -90,7 +95,7 @@ def list_comparison_models(member: EnsembleMember, spatial: bool) -> list[Model]
 @dataclass(frozen=True)
 class Ensemble:
     """
-    Ensemble of scenes and the tasks that compute it: all motions by the exact equations, chosen ones by others.
+    Ensemble of scenes, and the tasks that compute it: all motions by the exact equations, chosen ones by other models.
 
     members: every scene has a recorded motion. spatial: whether the spatial model is among those of the engine.
     tolerance: relative error asked of the largest accelerations by the engine; the equations take theirs.
@@ -121,16 +126,23 @@ class Ensemble:
         return list_comparison_models(choice.member, self.spatial)
 
     def _point(self, member: EnsembleMember, model: Model, results: TaskResults) -> MotionDemandsAtScale:
-        """Return the demands of one motion at one scale by a model, read from `results`; only a status if it failed."""
+        """Return the demands of one motion at one scale by a model, from `results`; only a status if it failed."""
         found: MotionAnswer | str = results.value(self._task(member, model), lambda task, failed: failed.outcome.value)
         if isinstance(found, str):
-            return MotionDemandsAtScale(member, model.key, found)
+            return MotionDemandsAtScale(member=member, model=model.key, status=found)
         numbers, forces, spectra, resolved, instant = found
         if model != EXACT and numbers.status != Outcome.OK:
             # Demands up to an early end are used only from the exact equations; else status and end time remain.
-            return MotionDemandsAtScale(member, model.key, numbers.status, instant=instant)
-        values = collect_demand_values(member.scene, numbers, forces, resolved)
-        return MotionDemandsAtScale(member, model.key, numbers.status, values, spectra, forces, instant)
+            return MotionDemandsAtScale(member=member, model=model.key, status=numbers.status, instant=instant)
+        return MotionDemandsAtScale(
+            member=member,
+            model=model.key,
+            status=numbers.status,
+            values=collect_demand_values(member.scene, numbers, forces, resolved),
+            spectra=spectra,
+            forces=forces,
+            instant=instant,
+        )
 
     def _task(self, member: EnsembleMember, model: Model) -> Task:
         """Return the task that computes one motion at one scale by a model."""
@@ -138,7 +150,13 @@ class Ensemble:
         seconds = estimate_motion_seconds(scene, model) * (SPECTRA_COST_RATIO if model == EXACT else 1.0)
         arguments: MotionTaskArguments = scene, model, model.tolerance(self.tolerance)
         return Task(
-            compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=MOTION_TIME_LIMIT
+            function=compute_demands,
+            argument=arguments,
+            stage=STAGE,
+            seconds=seconds,
+            about=scene,
+            needs_compiled_reference=model.side == "reference",
+            timeout=MOTION_TIME_LIMIT,
         )
 
 
@@ -148,7 +166,7 @@ def _drop_repeated_tasks(tasks: Iterable[Task]) -> list[Task]:
 
 
 def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
-    """Compute one motion by one model; return its demands and, if by the exact equations, its floor spectra."""
+    """Return the demands of one motion by one model, and what else `MotionAnswer` has."""
     scene, model, tolerance = task
     motion = import_function(model.trajectory)(scene, NO_PHASES, tolerance=tolerance, **model.motion_settings)
     spectra = floor_spectra(motion) if model == EXACT else None
@@ -156,7 +174,12 @@ def compute_demands(task: MotionTaskArguments) -> MotionAnswer:
 
 
 def read_as_integrated(task: MotionTaskArguments) -> list[Estimate]:
-    """Return peak accelerations by SMALL or EXACT, dry friction, without slip below 1 mm/s (demands have it); or []."""
+    """
+    Return the peak acceleration of each body as integrated, that is without the instants of slip below 1 mm/s.
+
+    The demands of the same motion have the literal supremum, in which such instants count. The list is empty where the
+    two are the same: by engine models, and without dry friction.
+    """
     scene, model, tolerance = task
     resolved = {SMALL.key: SMALL_AS_INTEGRATED, EXACT.key: EXACT_AS_INTEGRATED}.get(model.key)
     if resolved is None or not resolved.applies(scene):

@@ -1,4 +1,4 @@
-"""Assembly of the result of an ensemble from its points, for its files, its page and the terminal."""
+"""Assembly of the result of an ensemble from the demands of its motions, for its files, its page and the terminal."""
 
 import hashlib
 from collections import Counter
@@ -40,7 +40,8 @@ def build_result(
     """
     Return the result of an ensemble: buildings, motions, statistics and curves of demands, extreme support forces.
 
-    listed: motions of the suite by name, with the factors and magnitudes that its list states.
+    run: command, times and inputs of the run. tolerance: relative error asked of the engine. target: spectrum to which
+    the motions are scaled, or None. listed: motions of the suite by name, with the factors and magnitudes of its list.
     """
     members = [point.member for point in points.equations]
     rows = list(summarize_demands(points))
@@ -59,7 +60,9 @@ def build_result(
         curves=list(make_demand_curves(points)),
         spectra=list(summarize_spectra(points.equations)),
         engine=result.EngineMotions(
-            SPATIAL.key if SPATIAL.key in points.compared else TRANSLATIONAL.key, list_engine_motions(points), tolerance
+            model=SPATIAL.key if SPATIAL.key in points.compared else TRANSLATIONAL.key,
+            motions=list_engine_motions(points),
+            tolerance=tolerance,
         ),
         run=run,
         target=target,
@@ -84,7 +87,11 @@ def list_ended_motions(points: EnsemblePoints) -> list[result.EndedMotion]:
     """Return the motions that the equations did not complete, each with the outcome and the time of its end."""
     return [
         result.EndedMotion(
-            at.member.structure, at.member.motion, at.member.scale, at.status, finite_or_none(at.instant)
+            structure=at.member.structure,
+            motion=at.member.motion,
+            scale=at.member.scale,
+            status=at.status,
+            instant=finite_or_none(at.instant),
         )
         for at in points.equations
         if at.status != Outcome.OK
@@ -99,13 +106,25 @@ def read_suite(members: Sequence[EnsembleMember], listed: Mapping[str, Motion]) 
         peak = largest_horizontal_acceleration(member.scene) / member.scale
         about = listed.get(motion)
         factor, magnitude = (about.factor, about.magnitude) if about else (1.0, None)
-        known = motion, member.scene.duration, peak, factor * member.factor, magnitude
-        found.append(result.GroundMotion(*known, **describe_ground(member)))
+        found.append(
+            result.GroundMotion(
+                motion=motion,
+                duration=member.scene.duration,
+                peak=peak,
+                factor=factor * member.factor,
+                magnitude=magnitude,
+                **describe_ground(member),
+            )
+        )
     return found
 
 
 def describe_ground(member: EnsembleMember) -> dict[str, Any]:
-    """Return files, step, peaks, digest, spectrum of a motion times factors of its list and target, without scale."""
+    """
+    Return the fields of `GroundMotion` on the samples of a motion: files, step, components, digest and spectrum.
+
+    The samples have the factors of the suite's list and of the target spectrum, but not the scale of the ensemble.
+    """
     samples = member.scene.record / np.array([1.0, *[member.scale] * 3])
     origin = member.scene.excitation.origin if isinstance(member.scene.excitation, Record) else ()
     read, moving = describe_samples(member.motion, origin, samples), samples[:, 1:3][:, samples[:, 1:3].any(axis=0)]
@@ -121,7 +140,12 @@ def describe_ground(member: EnsembleMember) -> dict[str, Any]:
 def describe_structures(
     members: Sequence[EnsembleMember], displacements: Mapping[str, result.DemandAtScale]
 ) -> list[result.Structure]:
-    """Return structures: weight, periods, isolator linearized at mean or median of `displacements` at largest scale."""
+    """
+    Return the structures of an ensemble, each with its weight, its building and its equivalent linear isolator.
+
+    displacements: by structure, the largest displacements of the isolator at the largest scale. The isolator is
+    linearized at their mean, or at their median where the mean is not known.
+    """
     found = []
     for name, own in group_rows_by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, displacements.get(name)
@@ -131,10 +155,24 @@ def describe_structures(
         if displacement and not scene.flat and friction:
             linear = effective_isolator(scene, displacement)
             period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
-            isolator = result.LinearIsolator(displacement, period, damping, restoring, statistic, friction)
-        weight = scene.total_mass * GRAVITY
-        about = name, scene.title, len(scene.bodies), weight, isolator, read_building(scene)
-        found.append(result.Structure(*about))
+            isolator = result.LinearIsolator(
+                displacement=displacement,
+                period=period,
+                damping=damping,
+                restoring=restoring,
+                statistic=statistic,
+                friction=friction,
+            )
+        found.append(
+            result.Structure(
+                name=name,
+                title=scene.title,
+                bodies=len(scene.bodies),
+                weight=scene.total_mass * GRAVITY,
+                isolator=isolator,
+                building=read_building(scene),
+            )
+        )
     return found
 
 

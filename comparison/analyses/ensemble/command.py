@@ -126,7 +126,11 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     write = partial(write_ensemble, console, options, argv, begin, build, check)
 
     def add_engine_tasks(results: TaskResults, display: Display) -> Sequence[Task]:
-        """Print and write demands by the exact equations; choose motions by them for all other models; return tasks."""
+        """
+        Return the tasks of the motions chosen for the other models, once the exact equations have computed all motions.
+
+        Before that, print and write the demands by the exact equations.
+        """
         chosen = [] if asked == 0 else choose_motions(ensemble.collect_points(results).equations, asked)
         further = results.find_missing(ensemble.make_engine_tasks(chosen))
         if further:
@@ -159,7 +163,7 @@ def scale_to_target(
 
 
 def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: Sequence[Task], jobs: int) -> str:
-    """Return a sentence: how many motions the engine computes next, by which model and in what time."""
+    """Return a sentence on how many motions the engine computes next, by which model and in what time."""
     turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
     engine = SPATIAL if turning else TRANSLATIONAL
     wall = estimate_wall_seconds([task.seconds for task in tasks], jobs) + WRITING_SECONDS
@@ -168,7 +172,7 @@ def word_engine_work(ensemble: Ensemble, chosen: Sequence[ChosenMember], tasks: 
 
 
 def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], asked: EngineRequest, jobs: int) -> None:
-    """Print how many motions will be computed, the rough time, and which buildings lack a spatial model, and why."""
+    """Print how many motions will be computed and in what time, and why some buildings have no spatial model."""
     members = ensemble.members
     first = list_expected_choices(members, asked)
     later = ensemble.make_engine_tasks([ChosenMember(member, ()) for member in first])
@@ -188,7 +192,11 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
 def make_demand_check(
     options: argparse.Namespace, members: Sequence[EnsembleMember]
 ) -> Callable[[EnsembleResult], list[DemandCheck]]:
-    """Return a function that checks demands against limits and, if asked, a stored ensemble. Raises SceneError."""
+    """
+    Return a function that compares demands with their limits and, with `--against`, with a stored ensemble.
+
+    Raises SceneError if a stored ensemble is asked for that cannot be read.
+    """
     limits = read_demand_limits({member.structure: member.scene for member in members})
     within = read_number(
         "--within",
@@ -214,7 +222,11 @@ def make_demand_check(
 
 
 def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
-    """If `asked`, print on standard error all demands whose verdict is not "met", and counts; return the exit code."""
+    """
+    Return the exit code of the checks: 1 if they were asked for and a demand is not "met", else 0.
+
+    If they were asked for, the count of each verdict and every demand that is not met are printed on standard error.
+    """
     sys.stdout.flush()  # so that these lines come last if both outputs go to one file
     lines = word_checks(checks)
     if asked:
@@ -235,7 +247,13 @@ def write_ensemble(
     show: Callable[[Console, EnsembleResult], None],
     pending: int = 0,
 ) -> list[DemandCheck]:
-    """Write the files of the ensemble, print its tables, write its page; return the checks of its demands."""
+    """
+    Write the files of the ensemble, print its tables, write its page, and return the checks of its demands.
+
+    begin: when the command began. build: makes the result of the demands of all motions and the facts on the run.
+    check: compares the demands with limits. show: prints the result. pending: number of motions that the engine still
+    computes.
+    """
     cost, out = results.parts[STAGE].seconds, resolve_destination(options.out)
     scenes = {source: hashlib.sha256(scene_text(source)).hexdigest() for source in options.scenes}
     run = {**collect_run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1), "scenes": scenes}
@@ -258,11 +276,11 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
     """Return junit.xml of the checks of demands, a suite per structure; any verdict but "met" is a failure."""
     suites = [
         JUnitSuite(
-            bound,
-            run["compute_seconds"],
-            run["began"],
-            [
-                JUnitCase(f"{each.key}: {each.title}", [] if each.verdict == MET else [word_check(each)])
+            name=bound,
+            seconds=run["compute_seconds"],
+            timestamp=run["began"],
+            cases=[
+                JUnitCase(name=f"{each.key}: {each.title}", failures=[] if each.verdict == MET else [word_check(each)])
                 for each in checks
                 if each.bound == bound
             ],
@@ -273,7 +291,7 @@ def format_demand_checks(checks: Sequence[DemandCheck], run: Mapping[str, Any]) 
 
 
 def list_expected_choices(members: Sequence[EnsembleMember], asked: EngineRequest) -> list[EnsembleMember]:
-    """Return as many members as the engine is expected to compute, to estimate the cost; none is chosen yet."""
+    """Return as many members as the engine is expected to compute, to estimate the cost before any is chosen."""
     if asked == MAX_ENGINE_MOTIONS:
         return list(members)
     return [
@@ -297,7 +315,7 @@ def _group_largest_scale_by_structure(members: Sequence[EnsembleMember]) -> list
 
 
 def read_listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
-    """Return by name the motions in suite folders, which `--suite` or else the scene files state."""
+    """Return by name the motions in the folders of the suites that `--suite`, or else the scene files, name."""
     suites = [(Path(), options.suite)]
     if options.suite is None:
         loadings = [(source, scene_tables(scene_text(source), source).get("excitation")) for source in options.scenes]

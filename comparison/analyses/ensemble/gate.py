@@ -26,7 +26,14 @@ def check_demands(
     stored: str | Path | None,
     within: float,
 ) -> list[str]:
-    """List demands beyond `limits` (else `source`'s) or off `stored` by more than share `within`. Raises ValueError."""
+    """
+    Return the lines that say which demands of a scene are not within their limits; an empty list if all are.
+
+    source: scene file or name. suite, bounds: motions, and factors of a lower and an upper friction, in place of the
+    scene's own. limits: by key, in place of the scene's own limits of these keys. stored: folder of an earlier
+    ensemble, from whose demands these may differ by the share `within`. Raises ValueError without anything to compare
+    with.
+    """
     data = scene_tables(scene_text(source), str(source))
     data = data if suite is None else with_suite(data, suite)
     members = list_members([make_family(with_bounds(data, bounds), str(source))])
@@ -47,7 +54,7 @@ def check_demands(
 
 
 def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
-    """Compute the ensemble in this process; engine: whether it too computes the motions that govern demands."""
+    """Compute the ensemble in this process. engine: whether Exudyn computes motions with a worst demand, too."""
     results = TaskResults()
     _compute_tasks(results, ensemble.make_equation_tasks())
     chosen = choose_motions(ensemble.collect_points(results).equations, None) if engine else []

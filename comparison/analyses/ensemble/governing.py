@@ -1,4 +1,4 @@
-"""Choice of the motions for the engine: those that govern by the equations, and the one nearest the median."""
+"""Choice of the motions for the engine: those with a worst demand by the equations, and the one nearest the median."""
 
 from __future__ import annotations
 
@@ -20,23 +20,27 @@ if TYPE_CHECKING:
     from comparison.analyses.ensemble.result import EnsembleResult
 
 ALL_MOTIONS = "all"  # value of the option --engine that selects every motion
-GOVERNING = {  # the engine computes the motion with the worst of each of these demands; reason in words
+# Demands that govern: the engine computes the motion with the worst value of each, for the reason stated in words
+GOVERNING = {
     "displacement": "largest displacement",
     "base_shear": "largest base shear",
     "drift": "largest drift",
     "support_force_max": "largest support force",
     "support_force_min": "smallest support force",
 }
-GOVERNING_OF_LIMITS = {  # demand that equations lack: those of theirs whose worst motions are taken to govern it
+# For each demand that the equations lack: their demands whose worst motions are taken to be its worst motions, too
+GOVERNING_OF_LIMITS = {
     "uplift": ("support_force_max", "support_force_min"),
     "support_displacement": ("displacement",),
 }
-MEDIAN_REASON = "nearest the median displacement"  # reason why the engine computes a motion
-ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"  # reasons why the engine computes a motion
+# Further reasons why the engine computes a motion
+MEDIAN_REASON = "nearest the median displacement"
+ASKED_REASON, NEXT_LARGEST_REASON = "asked for", "next largest displacement"
 MAX_ENGINE_MOTIONS = 100_000  # largest number of motions per structure that a user may ask for
 EXPECTED_GOVERNING_COUNT = 3  # assumed number of governing motions per structure while the equations are not solved
 
-# Motions that the engine is asked to compute: number per structure, names, or None: those with a worst or median demand
+# Motions that the engine is asked to compute: their number per structure, or their names, or None for those with a
+# worst demand or the median displacement
 EngineRequest = int | tuple[str, ...] | None
 
 
@@ -71,16 +75,22 @@ def estimate_engine_motion_count(asked: EngineRequest, motions: int) -> int:
 
 
 def bound_motion_count(asked: EngineRequest, scene: Scene, motions: int) -> int:
-    """Return an upper bound on a structure's motions for the engine: each demand may be governed by another motion."""
+    """Return an upper bound on the number of motions of a structure that the engine will compute."""
     if asked is not None:
         return estimate_engine_motion_count(asked, motions)
-    # number of demands in GOVERNING that the scene lacks: drift of a single body, both forces without supports
+    # Every demand in GOVERNING and the median may choose another motion, but for demands that the scene lacks: the
+    # drift of a single body, both support forces without supports.
     absent = (len(scene.bodies) == 1) + 2 * (scene.support_places is None)
     return min(len(GOVERNING) + 1 - absent, motions)
 
 
 def choose_motions(points: Sequence[MotionDemandsAtScale], asked: EngineRequest) -> list[ChosenMember]:
-    """Choose the engine's motions by the exact equations' demands: all at every scale if asked, else at the largest."""
+    """
+    Return the motions that the engine is to compute, chosen by the demands of the exact equations.
+
+    They are at the largest scale, or all motions at every scale if these are asked for. points: the demands of every
+    motion by the exact equations.
+    """
     if asked == MAX_ENGINE_MOTIONS:
         return [ChosenMember(point.member, (ASKED_REASON,)) for point in points]
     top = max((point.member.scale for point in points), default=0.0)
@@ -113,7 +123,12 @@ def _find_governing(points: Sequence[MotionDemandsAtScale]) -> Iterator[tuple[in
 
 
 def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: str) -> dict[str, str]:
-    """Return the motions that govern a demand with a limit, by the equations at the largest scale, and why in words."""
+    """
+    Return the motions with the worst values of a demand on which a limit is, each with the reason in words.
+
+    They are those by the equations at the largest scale. limited: key of the demand; one that the equations lack has
+    the motions of GOVERNING_OF_LIMITS.
+    """
     worst: dict[str, str] = {}
     for quantity in GOVERNING:
         values = [
@@ -132,7 +147,7 @@ def list_governing_motions(ensemble: EnsembleResult, structure: str, limited: st
 
 
 def _sign_of_worst(quantity: str) -> float:
-    """Return -1 for a demand whose smallest value is the unfavorable one, else 1."""
+    """Return -1 for a demand whose smallest value is the worst, else 1."""
     return -1.0 if quantity in SMALLEST_IS_WORST else 1.0
 
 

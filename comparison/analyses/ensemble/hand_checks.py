@@ -15,7 +15,12 @@ from reference.problem import GRAVITY
 
 @dataclass(frozen=True)
 class HandCheck:
-    """Comparison of a number in the report with one from a hand formula, or with a range; both in `unit`."""
+    """
+    Comparison of a number in the report with a hand formula, all in `unit`.
+
+    what: the number in words. formula: with its numbers, as text. low, high: ends of the range that the formula gives,
+    equal if it gives one number. found: the number in the report.
+    """
 
     what: str
     formula: str
@@ -56,16 +61,32 @@ def list_hand_checks(ensemble: EnsembleResult, structure: Structure) -> Iterator
     if read is None or not read.masses:
         return
     tons, weight = sum(read.masses) / 1e3, structure.weight / 1e3
-    yield HandCheck("weight", f"{tons:.5g} t × {GRAVITY:g} m/s²", tons * GRAVITY, tons * GRAVITY, weight, "kN")
+    by_mass = tons * GRAVITY
+    yield HandCheck(
+        what="weight",
+        formula=f"{tons:.5g} t × {GRAVITY:g} m/s²",
+        low=by_mass,
+        high=by_mass,
+        found=weight,
+        unit="kN",
+    )
     if read.support_loads:
         total = sum(read.support_loads) / 1e3
-        yield HandCheck("dead loads of all supports together", "weight", weight, weight, total, "kN")
+        what = "dead loads of all supports together"
+        yield HandCheck(what=what, formula="weight", low=weight, high=weight, found=total, unit="kN")
     period = read.isolated_period[0][0]
     if read.radius is not None and period is not None:
         rigid = 2.0 * math.pi * math.sqrt(read.radius / GRAVITY)
         fixed = read.fixed_base_period[0][0] if read.fixed_base_period[0] else 0.0
         formula = f"T = 2π √({read.radius:.4g} / {GRAVITY:g}) to √(T² + {fixed:.3g}²)"
-        yield HandCheck("first period on the isolator, along x", formula, rigid, math.hypot(rigid, fixed), period, "s")
+        yield HandCheck(
+            what="first period on the isolator, along x",
+            formula=formula,
+            low=rigid,
+            high=math.hypot(rigid, fixed),
+            found=period,
+            unit="s",
+        )
     yield from _check_base_shear(ensemble, structure)
     yield from _check_top_drift(ensemble, structure)
 
@@ -86,13 +107,23 @@ def _check_base_shear(ensemble: EnsembleResult, structure: Structure) -> Iterato
         f"W √(tan² φ + {at_rest:.3g}²) to W (tan φ + {sliding:.3g}), "
         f"sin φ = {1e3 * known[motion]:.4g} / {1e3 * read.radius:.4g}"
     )
+    # At the largest displacement the platform moves across the restoring force, if at all. The shear is there at least
+    # the root of the squares of this force and of friction at rest. It is never more than the largest restoring force
+    # plus the largest friction.
     low, high, weight = math.hypot(math.tan(angle), at_rest), math.tan(angle) + sliding, structure.weight / 1e3
     if shear is not None:
-        yield HandCheck(f"base shear under {motion}", formula, low * weight, high * weight, shear / 1e3, "kN")
+        yield HandCheck(
+            what=f"base shear under {motion}",
+            formula=formula,
+            low=low * weight,
+            high=high * weight,
+            found=shear / 1e3,
+            unit="kN",
+        )
 
 
 def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator[HandCheck]:
-    """Yield the check that the largest top drift is the largest shear of that story over its stiffness."""
+    """Yield the check that the largest drift of the top story is its largest shear over its stiffness."""
     read, top = structure.building, structure.bodies
     assert read is not None
     found = (
@@ -106,7 +137,14 @@ def _check_top_drift(ensemble: EnsembleResult, structure: Structure) -> Iterator
     low, high = 1e3 * shear / (stiff * math.hypot(1.0, 2.0 * ratio)), 1e3 * shear / soft
     both = " to ".join(dict.fromkeys(f"{each / 1e6:.4g}" for each in (stiff, soft)))
     formula = f"V / (k √(1 + (2 ζ)²)) to V / k, V = {_word_number(shear / 1e3)} kN, k = {both} MN/m, ζ = {ratio:.3g}"
-    yield HandCheck(f"largest drift below {name_floor(structure, top)}", formula, low, high, 1e3 * drift, "mm")
+    yield HandCheck(
+        what=f"largest drift below {name_floor(structure, top)}",
+        formula=formula,
+        low=low,
+        high=high,
+        found=1e3 * drift,
+        unit="mm",
+    )
 
 
 def list_hand_check_rows(ensemble: EnsembleResult) -> list[tuple[str, HandCheck]]:

@@ -1,15 +1,15 @@
 """
 Limits on the demands of an ensemble, and comparison of its demands with those of a stored ensemble.
 
-A limit is met where the demand is not beyond it by more than its numerical error. A demand is that of the stored
-ensemble where it differs by no more than a tolerance and both numerical errors. A demand that the engine alone has is
-judged over the motions that it computed, where those that govern by the equations are among them. A motion that
-reached the travel has a displacement of at least the travel.
+A limit is met where the demand is not beyond it by more than its numerical error. A demand is equal to that of the
+stored ensemble where the two differ by no more than a tolerance and both numerical errors. A demand that only the
+engine computes is judged over the motions that it computed, if the motions that govern (those with a worst demand by
+the equations) are among them. A motion that reached the travel has a displacement of at least the travel.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparison.analyses.ensemble.governing import list_governing_motions
 from comparison.analyses.ensemble.quantities import demand_title, unit_of_check, unit_of_demand, word_value
@@ -51,11 +51,12 @@ class DemandCheck:
     """
     Comparison of a demand of a structure with a stated number: its limit, or its value in a stored ensemble.
 
-    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words. statistic:
-    what `found` is over the motions. on: the statistic and its motions in words. found, stated: in SI; None without a
-    number. excess: found less stated; of a limit 0 below it. allowed: size of it that is met. motion: of the largest
-    value, "" of a mean. reason: why nothing is compared, "" otherwise. is_least: whether the demand is larger than
-    `found` by an unknown amount.
+    key: of the limit, or of the demand. bound: label of the structure, such as "lower bound". what: the demand in
+    words. statistic: "mean" or "largest", which `found` is over the motions. on: the statistic and its motions in
+    words. found, stated: the two numbers, in SI units; None if unknown. excess: found less stated, and 0 below a limit.
+    allowed: the largest excess that is met. unit: SI unit, "" of a pure number. motion: that of a largest value, "" of
+    a mean. reason: why nothing is compared, or "". is_least: whether the demand is larger than `found` by an unknown
+    amount.
     """
 
     key: str
@@ -86,7 +87,7 @@ class DemandCheck:
 
 
 def word_check(check: DemandCheck) -> str:
-    """Return the verdict on a demand in words: structure, demand, motion, computed and stated number, excess."""
+    """Return the verdict on a demand in a line that names the structure, the demand, the motion and both numbers."""
     found, stated = (_word_number(value, check.unit) for value in (check.found, check.stated))
     under = f" ({check.motion})" if check.motion else ""
     least = "at least " if check.is_least else ""
@@ -101,7 +102,7 @@ def _word_number(value: float | None, unit: str) -> str:
 
 
 def _word_check_verdict(check: DemandCheck) -> str:
-    """Return the verdict in words, with the excess over the limit; "more than" if the demand is a lower bound."""
+    """Return the verdict in words, with the excess over the limit, or the reason why there is no verdict."""
     unit, factor = unit_of_check(check.unit)
     excess, stated = (None if value is None else factor * value for value in (check.excess, check.stated))
     verdict = word_verdict(check.verdict, excess, stated, unit, is_least=check.is_least)
@@ -109,7 +110,12 @@ def _word_check_verdict(check: DemandCheck) -> str:
 
 
 def make_limit_rows(limits: Sequence[LimitVerdict]) -> list[tuple[str, ...]]:
-    """Return a table row per limit: demand, structure, computed and stated number, ratio, statistic, motion, words."""
+    """
+    Return a row of the table of limits for each limit.
+
+    Its cells are the demand, the structure, the computed and the stated number, their ratio, the statistic, the motion
+    and the verdict in words.
+    """
     rows: list[tuple[str, ...]] = []
     for each in limits:
         least = "≥ " if each.is_least else ""
@@ -136,11 +142,22 @@ def list_verdicts(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
     """Return the verdict of each check in the form of the file summary.json and the page."""
     return [
         LimitVerdict(
-            check.key, check.bound, check.verdict, word_check(check), check.what, check.on, check.found, check.stated,
-            check.unit, check.motion, check.is_least, _word_check_verdict(check), check.statistic,
+            key=check.key,
+            bound=check.bound,
+            verdict=check.verdict,
+            sentence=word_check(check),
+            what=check.what,
+            on=check.on,
+            found=check.found,
+            stated=check.stated,
+            unit=check.unit,
+            motion=check.motion,
+            is_least=check.is_least,
+            words=_word_check_verdict(check),
+            statistic=check.statistic,
         )
         for check in checks
-    ]  # fmt: skip
+    ]
 
 
 def _rank_of_check(check: DemandCheck) -> tuple[int, float, float]:
@@ -160,7 +177,7 @@ def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -
 
 
 def read_demand_limits(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
-    """Return the limits on demands that scenes state. scenes, result: by name of the structure."""
+    """Return the limits on demands that scenes state. Scenes and result are by name of the structure."""
     stated = {name: scene.acceptance.demands for name, scene in scenes.items()}
     return {name: limits for name, limits in stated.items() if limits is not None}
 
@@ -178,21 +195,23 @@ def _check_body(
     ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
 ) -> DemandCheck:
     """Return the check of a demand of a body (None: of the isolator) against its limit, over all motions."""
+    # Motions may lack a value: those that ended early, and those that the engine did not compute. They can only raise
+    # the largest value, so that a limit on it which the known values break is broken in any case. A limit which they
+    # keep is met only if no motion ended early and the engine computed the motions that govern. Where it computed a
+    # part, the largest value takes the place of the mean, which is no larger.
     values, model = _values_at_largest_scale(ensemble, structure.name, key, body)
     known = [
         (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
     ]
-    per = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
+    divisor = structure.weight if key == WEIGHT_SHARE_KEY else 1.0
     of_engine = model not in ("", EXACT.key)
-    governing = of_engine and len(values) < ensemble.motions
-    taken = LARGEST_STATISTIC if governing else statistic
-    lacking = (
-        _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if governing else ""
-    )
+    is_part = of_engine and len(values) < ensemble.motions
+    taken = LARGEST_STATISTIC if is_part else statistic
+    lacking = _explain_missing_governing(ensemble, structure, key, {motion for *_, motion in known}) if is_part else ""
     least, least_motion = _bound_displacement_by_travel(ensemble, structure, key, statistic, values)
     is_least, count = least >= limit, len(values) if least >= limit else len(known)
     alone = model if of_engine else ""
-    on = _word_statistic(ensemble, statistic, count, alone, part=governing, governing=not lacking)
+    on = _word_statistic(ensemble, statistic, count, alone, part=is_part, governing=not lacking)
     by = " by statics" if key == "support_force_max" and not of_engine else ""
     on += f" at scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 else ""
     what, bound = f"{_word_demand(structure, key, body)}{by}", label_structures(ensemble)[structure.name]
@@ -200,26 +219,34 @@ def _check_body(
     unit, ended = "" if key == WEIGHT_SHARE_KEY else unit_of_demand(key), len(values) - len(known)
     reason = f"{ended} {'motion has' if ended == 1 else 'motions have'} no value" if ended else lacking
     if is_least:
-        return DemandCheck(*about, least, limit, least - limit, 0.0, unit, least_motion, is_least=True)
+        return DemandCheck(
+            *about, found=least, stated=limit, excess=least - limit, unit=unit, motion=least_motion, is_least=True
+        )
     if taken == MEAN_STATISTIC and ended:
         reason += f"; with the travel there at least {_word_number(least, unit)}" if least > -math.inf else ""
-        needed = (limit * len(values) - math.fsum(value for value, *_ in known) / per) / ended
+        needed = (limit * len(values) - math.fsum(value for value, *_ in known) / divisor) / ended
         reason += _word_breaking_value(needed, ended, unit)
     if not known:
         reason = reason if values else _explain_lacking_demand(ensemble, key)
-        return DemandCheck(*about, None, limit, unit=unit, reason=reason)
+        return DemandCheck(*about, found=None, stated=limit, unit=unit, reason=reason)
     value, error, motion = _compute_mean(known) if taken == MEAN_STATISTIC else max(known)
-    found, error = value / per, error / per
+    found, error = value / divisor, error / divisor
     excess = max(found - limit, 0.0)
     if excess > error and statistic == LARGEST_STATISTIC:  # Motions without a value can only raise the largest.
         reason = ""
-    elif excess > error and governing and not reason:  # Missing motions could lower the mean.
+    elif excess > error and is_part and not reason:  # Missing motions could lower the mean.
         reason = f"the largest is above the limit, and the mean is that of {ensemble.motions} motions: --engine all"
-    return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+    return DemandCheck(
+        *about, found=found, stated=limit, excess=excess, allowed=error, unit=unit, motion=motion, reason=reason
+    )
 
 
 def _word_breaking_value(needed: float, ended: int, unit: str) -> str:
-    """Word the mean `needed` of `ended` unknown demands above which a mean limit breaks; "" if any value breaks it."""
+    """
+    Return in words above which mean of the unknown demands a limit on the mean breaks; "" if any value breaks it.
+
+    needed: that mean, in SI units. ended: number of unknown demands.
+    """
     theirs = "a value there" if ended == 1 else "a mean of theirs"
     return f"; {theirs} above {_word_number(needed, unit)} breaks the limit" if needed > 0.0 else ""
 
@@ -241,7 +268,11 @@ def _word_demand(structure: Structure, key: str, body: int | None) -> str:
 
 
 def _compute_mean(known: Sequence[tuple[float, float, str]]) -> tuple[float, float, str]:
-    """Return the mean over motions of demands and of their errors, and "" as name of the motion, which a mean lacks."""
+    """
+    Return the mean of demands, the mean of their errors, and "" in place of a motion.
+
+    known: value, error and motion of each.
+    """
     values, errors, _ = zip(*known)
     return sum(values) / len(known), sum(errors) / len(known), ""
 
@@ -252,8 +283,9 @@ def _word_statistic(
     """
     Return in words the statistic that is checked, and over which motions it is taken.
 
-    model: of the engine, where it alone has the demand. part: whether it computed a part of the motions; governing:
-    those that govern among them.
+    statistic: "mean" or "largest". known: number of motions with a value. model: key of the engine model, if it alone
+    has the demand, or "". part: whether it computed only a part of the motions. governing: whether those are among them
+    that have the worst demands by the equations.
     """
     whole = word_motion_count(ensemble.motions)
     if part:
@@ -265,7 +297,11 @@ def _word_statistic(
 
 
 def _explain_missing_governing(ensemble: EnsembleResult, structure: Structure, key: str, computed: set[str]) -> str:
-    """Return why motions that govern a demand may lack an engine result; "" if the engine computed all of them."""
+    """
+    Return why the engine may lack a motion that governs a demand, or "" if it lacks none.
+
+    computed: the motions that the engine computed.
+    """
     moved = ensemble.values_at_largest_scale(structure.name, "displacement", None, EXACT.key)
     if ended := [motion for motion, number in moved.items() if number.value is None]:
         return f"{_name_motions(ended)} ended early by the equations, so which motions govern is not known"
@@ -284,7 +320,12 @@ def _name_motions(motions: Sequence[str]) -> str:
 def _bound_displacement_by_travel(
     ensemble: EnsembleResult, structure: Structure, key: str, statistic: str, values: Mapping[str, Statistic]
 ) -> tuple[float, str]:
-    """Return a lower bound on a displacement where motions reached the limit of travel, and their names; else -inf."""
+    """
+    Return a lower bound, m, on the mean or largest displacement, if motions reached the travel of the isolator.
+
+    With it are the names of these motions where it is on the largest. The bound is -inf if no motion reached the
+    travel, or if motions ended early for another reason and the mean is asked for.
+    """
     travel = structure.building.travel if structure.building else None
     stripe = ensemble.find_demand(structure.name, "displacement")
     ended = [motion for motion, number in values.items() if number.value is None]
@@ -301,7 +342,11 @@ def _bound_displacement_by_travel(
 def _values_at_largest_scale(
     ensemble: EnsembleResult, structure: str, quantity: str, body: int | None
 ) -> tuple[dict[str, Statistic], str]:
-    """Return a demand by motion at the largest scale, and the model that it is from: the equations, else the engine."""
+    """
+    Return a demand by motion at the largest scale, and the key of the model that it is from.
+
+    This is that of the exact equations, or of the engine if they lack the demand; without either, both are empty.
+    """
     for model in (EXACT.key, ensemble.engine.model):
         if values := ensemble.values_at_largest_scale(structure, quantity, body, model):
             return values, model
@@ -335,27 +380,27 @@ def _demands_by_key(ensemble: EnsembleResult) -> dict[DemandKey, DemandAtScale]:
 def _compare_demands(
     named: Mapping[str, str], place: DemandKey, new: DemandAtScale | None, old: DemandAtScale | None, within: float
 ) -> Iterator[DemandCheck]:
-    """Yield checks of a new demand's mean and largest value against the stored (old) ones; none if both are missing."""
+    """Yield the checks of the mean and the largest value of a demand against stored ones; none if both are missing."""
     structure, quantity, body, scale = place
     for statistic in (MEAN_STATISTIC, LARGEST_STATISTIC):
         sides = [
             None if each is None else each.mean if statistic == MEAN_STATISTIC else each.largest for each in (new, old)
         ]
         found, stated = (None if each is None else each.value for each in sides)
-        about = (
-            quantity,
-            named[structure],
-            demand_title(quantity, body),
-            statistic,
-            f"{statistic}, scale {scale:g}",
-            found,
-            stated,
+        check = DemandCheck(
+            key=quantity,
+            bound=named[structure],
+            what=demand_title(quantity, body),
+            statistic=statistic,
+            on=f"{statistic}, scale {scale:g}",
+            found=found,
+            stated=stated,
+            unit=unit_of_demand(quantity),
+            motion=new.largest_motion if new is not None and statistic == LARGEST_STATISTIC else "",
         )
-        motion = new.largest_motion if new is not None and statistic == LARGEST_STATISTIC else ""
-        unit = unit_of_demand(quantity)
         if found is not None and stated is not None:
             errors = sum(each.error or 0.0 for each in sides if each is not None)
-            yield DemandCheck(*about, found - stated, within * abs(stated) + errors, unit, motion)
+            yield replace(check, excess=found - stated, allowed=within * abs(stated) + errors)
         elif new is None or old is None or found is not stated:
             lacking = "this ensemble" if found is None else "the stored ensemble"
-            yield DemandCheck(*about, unit=unit, motion=motion, reason=f"{lacking} lacks it")
+            yield replace(check, reason=f"{lacking} lacks it")

@@ -32,7 +32,12 @@ class EnsembleMember:
 def with_suite(
     data: dict[str, Any], suite: str | Path, components: int | None = None, normalized: bool = False
 ) -> dict[str, Any]:
-    """Return the content of a scene file with its loading replaced by every motion of a suite, at full duration."""
+    """
+    Return the content of a scene file with its loading replaced by every motion of a suite, at full duration.
+
+    components: horizontal components of a motion, 1 or 2, or None for the suite's own. normalized: whether to take the
+    normalized accelerations of the suite.
+    """
     name = str(suite) if ":" in str(suite) else str(Path(suite).absolute())
     record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if normalized else {})
     record |= {} if components is None else {"components": components}
@@ -52,13 +57,19 @@ def _is_wrong_duration(value: Any) -> bool:
 
 
 def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
-    """Return scenes of families (variants of one scene) as members. Raises SceneError: no record, or names repeat."""
+    """
+    Return the scenes of all families as members of an ensemble.
+
+    A family is the scenes of one file that differ in the values of keys. Raises SceneError if a scene has no record, or
+    if two families have the same name.
+    """
     names = [family.name for family in families]
     for name in names:
         if names.count(name) > 1:
             raise SceneError(name, "scene", name, "two files have this name, and the structures are named by it")
     members = []
     for family in families:
+        # Keys of the record tell motions apart; all others but the scale tell structures apart.
         inner = [key for key in family.columns if key != SCALE_KEY and not key.startswith(RECORD_KEY)]
         outer = [key for key in family.columns if key.startswith(RECORD_KEY)]
         for n, scene in enumerate(family.scenes):
@@ -68,12 +79,13 @@ def list_members(families: Sequence[Family]) -> tuple[EnsembleMember, ...]:
             values = ", ".join(_word_varied_value(family, key, n) for key in inner)
             motion = ", ".join(family.labels[key][n] for key in outer) or scene.excitation.files
             structure = f"{family.name}[{values}]" if values else family.name
-            members.append(EnsembleMember(structure, motion, float(scene.excitation.scale or 1.0), scene))
+            scale = float(scene.excitation.scale or 1.0)
+            members.append(EnsembleMember(structure=structure, motion=motion, scale=scale, scene=scene))
     return tuple(members)
 
 
 def _word_varied_value(family: Family, key: str, n: int) -> str:
-    """Return the name and value that key `key` of a scene file has in scene `n` of the family."""
+    """Return in words the key `key` of a scene file and its value in scene `n` of the family."""
     return family.labels[key][n] if key == BOUNDS_KEY else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
@@ -86,7 +98,7 @@ def refuse_scenes_without_model_data(members: Sequence[EnsembleMember], model: M
 
 
 def group_rows_by(rows: Iterable[Row], name: str) -> dict[Any, list[Row]]:
-    """Group rows by the value of their attribute `name`; groups stand in order of first occurrence."""
+    """Return lists of the rows by the value of their attribute `name`, in the order in which the values first occur."""
     groups: dict[Hashable, list[Row]] = {}
     for row in rows:
         groups.setdefault(attrgetter(name)(row), []).append(row)

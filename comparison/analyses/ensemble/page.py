@@ -1,4 +1,4 @@
-"""Page of an ensemble: building, motions, demands, supports, engine; the style of all pages prints it on A4."""
+"""Page of an ensemble: its sections, in order, and the variables that the template of each section reads."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -105,7 +105,7 @@ def _limits_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _height_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return, for the template, tables and plots of every demand over the height, from the top body down."""
+    """Return the template variables on demands over the height: tables, from the top body down, and plots."""
     weight = ensemble.structures[0].weight
     profiles = {name: make_profile_rows(ensemble, name, ensemble.largest_scale) for name in PROFILE_QUANTITIES}
     differing = {row.name for row in profiles[SUPREMUM] if row not in profiles["acceleration"]}
@@ -137,7 +137,7 @@ def _directions_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _supports_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return, for the template, forces and uplift of every support by structure and model, beside static loads."""
+    """Return the template variables on supports: forces and uplift of each by every model, beside its static load."""
     by_place: dict[tuple[str, int], dict[str, Any]] = {}
     for each in ensemble.supports:
         by_place.setdefault((each.structure, each.support), {})[each.model] = each
@@ -173,7 +173,7 @@ def _engine_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return, for the template, demands by the equations over all motions, times the ratio of engine to equations."""
+    """Return the template variables on demands by the equations times the ratio of the engine to the equations."""
     rows = list(extrapolate_ratios(ensemble))
     some = any(ratio.motions >= MIN_SPREAD_MOTIONS for _, ratio, _ in rows)
     return {
@@ -184,7 +184,7 @@ def _extrapolated_ratios_context(ensemble: EnsembleResult, lost: LostParts) -> C
 
 
 def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return, for the template, a table of demands for every scale but the largest."""
+    """Return the template variables on scales: a table of demands for every scale but the largest."""
     others = sorted((scale for scale in ensemble.scales if scale != ensemble.largest_scale), reverse=True)
     return {
         **fractile_heads_context(),
@@ -193,12 +193,27 @@ def _scales_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
 
 
 def _run_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
-    """Return command, times and SHA-256 digests of the input files of the run, for the template."""
+    """Return the template variables on the run: its command and times, and SHA-256 digests of the input files."""
     return {"run": ensemble.run, "digests": sentences.digest_sentence(ensemble)}
 
 
+def _hand_checks_context(ensemble: EnsembleResult, lost: LostParts) -> Context:
+    """Return the template variables on hand checks: a row for each."""
+    return {"rows": list_hand_check_rows(ensemble)}
+
+
+def _has_directed_demands(ensemble: EnsembleResult) -> bool:
+    """Return whether any demand is along x or y alone."""
+    return any(each.quantity in ALONG for each in ensemble.stripes)
+
+
+def _has_engine_part(ensemble: EnsembleResult) -> bool:
+    """Return whether the engine computed some of the motions, but not all."""
+    return 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures)
+
+
 class PagePart(NamedTuple):
-    """Section of the page: name, title, function that returns its template variables, whether it is shown."""
+    """Section of the page. read: returns its template variables. is_shown: whether an ensemble has this section."""
 
     name: str
     title: str
@@ -208,34 +223,39 @@ class PagePart(NamedTuple):
 
 # Sections of the page in their order
 PARTS = (
-    PagePart("building", "The building as read", _building_context),
-    PagePart("suite", "The motions", _suite_context, lambda ensemble: bool(ensemble.suite)),
-    PagePart("demands", "Demands", _demands_context),
-    PagePart("limits", "Limits", _limits_context, lambda ensemble: bool(ensemble.limits)),
-    PagePart("height", "Over the height", _height_context),
+    PagePart(name="building", title="The building as read", read=_building_context),
+    PagePart(name="suite", title="The motions", read=_suite_context, is_shown=lambda ensemble: bool(ensemble.suite)),
+    PagePart(name="demands", title="Demands", read=_demands_context),
+    PagePart(name="limits", title="Limits", read=_limits_context, is_shown=lambda ensemble: bool(ensemble.limits)),
+    PagePart(name="height", title="Over the height", read=_height_context),
+    PagePart(name="directions", title="By direction", read=_directions_context, is_shown=_has_directed_demands),
     PagePart(
-        "directions",
-        "By direction",
-        _directions_context,
-        lambda ensemble: any(each.quantity in ALONG for each in ensemble.stripes),
+        name="supports",
+        title="Support forces",
+        read=_supports_context,
+        is_shown=lambda ensemble: bool(ensemble.supports),
     ),
-    PagePart("supports", "Support forces", _supports_context, lambda ensemble: bool(ensemble.supports)),
-    PagePart("motions", "Demands of every motion", _motions_context),
-    PagePart("hand_checks", "Checks by hand", lambda ensemble, lost: {"rows": list_hand_check_rows(ensemble)}),
+    PagePart(name="motions", title="Demands of every motion", read=_motions_context),
+    PagePart(name="hand_checks", title="Checks by hand", read=_hand_checks_context),
     PagePart(
-        "trust",
-        "How far the simple models can be trusted",
-        _engine_context,
-        lambda ensemble: bool(ensemble.engine.motions),
+        name="trust",
+        title="How far the simple models can be trusted",
+        read=_engine_context,
+        is_shown=lambda ensemble: bool(ensemble.engine.motions),
     ),
     PagePart(
-        "extended",
-        "The engine’s ratios, extended to the suite",
-        _extrapolated_ratios_context,
-        lambda ensemble: 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures),
+        name="extended",
+        title="The engine’s ratios, extended to the suite",
+        read=_extrapolated_ratios_context,
+        is_shown=_has_engine_part,
     ),
-    PagePart("scales", "Demands at the other scales", _scales_context, lambda ensemble: len(ensemble.scales) > 1),
-    PagePart("run", "How it was made", _run_context),
+    PagePart(
+        name="scales",
+        title="Demands at the other scales",
+        read=_scales_context,
+        is_shown=lambda ensemble: len(ensemble.scales) > 1,
+    ),
+    PagePart(name="run", title="How it was made", read=_run_context),
 )
 
 
@@ -252,13 +272,13 @@ def mark_code(text: str) -> Markup:
 
 
 def draw_panels(makers: Sequence[Callable[[], Panel]], lost: LostParts) -> list[Panel]:
-    """Return the plots that can be drawn; for each plot that raises, `lost` takes a line that says so."""
+    """Return the plots that can be drawn. lost: takes a line for each plot that raises an error."""
     found = (lost.attempt(f"plot {number}", make) for number, make in enumerate(makers, start=1))
     return [each for each in found if each is not None]
 
 
 def render_ensemble_page(ensemble: EnsembleResult) -> str:
-    """Return index.html; a line at the top and in place says which section or plot raised an error."""
+    """Return the content of index.html. A section or plot that raises an error is replaced by a line that says so."""
     lost = LostParts()
     parts = []
     for part in PARTS:

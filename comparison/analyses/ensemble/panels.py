@@ -1,4 +1,9 @@
-"""Plots of an ensemble: isolator over scale or motions, profiles over the height, floor and ground spectra."""
+"""
+Plots of an ensemble: demands of the isolator, profiles of demands over the height, floor and ground spectra.
+
+With several scales the demands of the isolator are lines over the scale, one for each motion. With one scale they are
+dots, one for each motion, in a vertical strip for each structure.
+"""
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -60,12 +65,12 @@ def make_floor_spectra_panels(ensemble: EnsembleResult) -> list[Callable[[], Pan
 
 
 def make_ground_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
-    """Return a function (or none) to plot target and motions' spectra at scale 1, with factors of list and target."""
+    """Return a function that plots the spectra of the ground motions at scale 1 and their target; [] without any."""
     return [partial(_ground_spectra, ensemble)] if ensemble.target or any(m.spectrum for m in ensemble.suite) else []
 
 
 def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
-    """Return a plot of a demand under every motion, with fractiles; along x: structures, or scales if several."""
+    """Return a plot of a demand under every motion, with its fractiles, in strips of structures or over the scale."""
     one = len(ensemble.scales) == 1
     series: list[dict[str, Any]] = []
     by_engine: list[dict[str, Any]] = []
@@ -110,7 +115,11 @@ def _demand_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
 def _travel_arrows(
     ensemble: EnsembleResult, place: int, curves: Sequence[DemandCurve], factor: float
 ) -> list[dict[str, Any]]:
-    """Return plot marks (arrows at the limit of travel) for motions that reach it, each at its smallest such scale."""
+    """
+    Return the arrows of a plot at the limit of travel, one for each motion that reaches it, at its smallest such scale.
+
+    place: index of the structure. curves: the displacements of its motions. factor: from m to the unit of the plot.
+    """
     structure, one = ensemble.structures[place], len(ensemble.scales) == 1
     travel = structure.building.travel if structure.building else None
     reached = {
@@ -137,7 +146,11 @@ def _travel_arrows(
 
 
 def _stated_lines(ensemble: EnsembleResult, quantity: str, span: Sequence[float]) -> list[dict[str, Any]]:
-    """Return lines across a plot of a demand, one for every stated limit of travel and limit of the demand."""
+    """
+    Return lines across a plot of a demand, one for each travel of an isolator and each limit of the demand.
+
+    span: horizontal positions of both ends.
+    """
     factor = display_unit(quantity, 1.0)[1]  # weight 1: the limit of a base shear is a share of it
     travels: list[tuple[str, float, dict[str, Any]]] = [
         ("travel", each.building.travel, {"color": "ink", "width": 1.0})
@@ -179,7 +192,12 @@ def _strip_place(place: float, number: int, count: int) -> float:
 def _motion_series(
     curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any
 ) -> list[dict[str, Any]]:
-    """Return a plot line of each motion's demand over scale, or dots side by side around `place`, with error bars."""
+    """
+    Return a plot line of each motion's demand over the scale, or a dot of each in the strip around `place`.
+
+    factor: from SI units to those of the plot. place: center of the strip, None for lines. look: style of the plot's
+    series; dots have error bars.
+    """
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [_strip_place(place, number, len(curves))]
@@ -203,7 +221,12 @@ def _median_line(
     factor: float,
     **look: Any,
 ) -> dict[str, Any]:
-    """Return the plot line of a structure's median with a band from 16 to 84 %. fractiles: three at every x."""
+    """
+    Return the plot line of the median of a structure, with a band from 16 to 84 %.
+
+    place: index of the structure. x: positions of the points. fractiles: for each of 16, 50 and 84 %, the values at x.
+    factor: from SI units to those of the plot. look: style of the line.
+    """
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scale_value(each.value, factor) for each in column] for key, column in columns}
     name = f"{label_structures(ensemble)[ensemble.structures[place].name]}: median, 16 to 84 %"
@@ -237,7 +260,7 @@ def _profile_panel(ensemble: EnsembleResult, quantity: str) -> Panel:
 def _profiles_of_structure(
     ensemble: EnsembleResult, structure: Structure, place: int, quantity: str
 ) -> list[dict[str, Any]]:
-    """Return a structure's lines over height: fractiles of a demand, and its mean if a limit is on that."""
+    """Return the lines of a structure over its height: fractiles of a demand, and its mean if a limit is on that."""
     series, name = [], label_structures(ensemble)[structure.name]
     factor = display_unit(quantity, structure.weight)[1]
     rows = ensemble.list_demands_of_bodies(structure.name, quantity)
@@ -287,7 +310,7 @@ def _make_period_axis(periods: Sequence[float]) -> dict[str, Any]:
 
 
 def _floor_spectrum(ensemble: EnsembleResult, title: str, is_platform: bool) -> Panel:
-    """Return the plot, with that title, of the median floor spectra, in g, of platform or top body by structure."""
+    """Return the plot of the floor spectra, in g, of the platform or the top body: the median for each structure."""
     series = [
         _median_line(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
         for place, structure in enumerate(ensemble.structures)

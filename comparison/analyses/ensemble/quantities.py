@@ -9,7 +9,7 @@ from reference.problem import GRAVITY, Scene
 
 Quantity = tuple[str, int]  # name of a demand and number of the body, 0 for the isolator
 
-# Key of the demand "floor acceleration, literal supremum": the largest value, of however short duration
+# Key of the demand "floor acceleration, literal supremum": the largest value, however short, also at slow sliding
 SUPREMUM = "acceleration_supremum"
 DIRECTED_DEMANDS = {  # demands of every story; besides their resultant, those along x and y are shown
     "story_shear": ("story shear", "N"),
@@ -43,7 +43,7 @@ BODY_DEMAND_TITLES = {  # title of each demand of a body; {} stands for the body
     **{name: f"{title} below body {{}}" for name, (title, _) in ALONG.items()},
 }
 FRACTILES = (0.16, 0.5, 0.84)  # fractiles computed, as shares of motions below them
-SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the unfavorable one
+SMALLEST_IS_WORST = ("contact_force_min", "support_force_min")  # demands whose smallest value is the worst
 # By SI unit: the unit in which a report shows a demand, and the factor to it
 DISPLAY_UNITS = {
     "m": ("mm", 1e3),
@@ -79,7 +79,7 @@ def display_unit(quantity: str, weight: float) -> tuple[str, float]:
 
 
 def unit_of_check(unit: str) -> tuple[str, float]:
-    """Return the unit in which a checked demand is shown, and the factor to it from SI; "%" if it has no unit."""
+    """Return the unit in which a demand with a limit is shown, and the factor to it from SI; "%" if it has no unit."""
     return DISPLAY_UNITS.get(unit, (unit, 1.0)) if unit else ("%", 100.0)
 
 
@@ -100,10 +100,10 @@ def collect_demand_values(
     scene: Scene, demands: Demands, forces: StoryForces, resolved: Sequence[Estimate] = ()
 ) -> dict[Quantity, Estimate]:
     """
-    Return all demands of one motion in one mapping by name and body, story forces and drift ratios included.
+    Return all demands of one motion by name and body, story forces and drift ratios included.
 
-    Support forces of a model without single supports are those of statics (`story_forces`). resolved: accelerations as
-    integrated of a motion whose `demands` have the literal suprema; none of a motion without suprema.
+    Support forces of a model without single supports are those of statics (`story_forces`). resolved: by body, peak
+    accelerations as integrated (see `read_as_integrated`), if `demands` have the literal suprema instead; else empty.
     """
     values = {(name, body): number for name, body, number in list_demands(demands) if name in DEMANDS}
     for body, number in enumerate(resolved, start=1):

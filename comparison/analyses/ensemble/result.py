@@ -1,4 +1,4 @@
-"""The file of an ensemble, summary.json: building, motions, fractiles, the curve of every motion, supports."""
+"""The content of an ensemble's file summary.json: structures, motions, demands and their statistics, limits."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from reference.problem.scene import MAX_BODIES
 
 FRACTILE_COUNT = 3  # number of fractiles: 16, 50 and 84 %
 RESULT_FILE = "summary.json"  # name of the file with the results of an ensemble
-# name and version of the format of RESULT_FILE
+# Name and version of the format of RESULT_FILE
 SCHEMA: Literal["phase-resonance/ensemble/4"] = "phase-resonance/ensemble/4"
 
 
@@ -54,7 +54,7 @@ class LinearIsolator:
 
 @result
 class BuildingRead:
-    """Properties of the building as read from its scene; axis 0 is x, 1 is y."""
+    """Properties of the building as read from its scene. In fields with two axes the first is x, the second y."""
 
     supports: Annotated[int | None, "number of supports; null where the scene states none"]
     load_per_support: Annotated[float | None, "weight over their number, N"]
@@ -104,7 +104,11 @@ class Structure:
 
 @result
 class FloorSpectrumStatistics:
-    """Floor spectrum of a body: statistics over motions at the largest scale, by the equations; larger of x and y."""
+    """
+    Statistics of the floor spectrum of a body over the motions at the largest scale, by the equations.
+
+    The spectrum is the larger of those along x and y.
+    """
 
     structure: Annotated[str, "name"]
     body: Annotated[int, "from 1"]
@@ -137,7 +141,7 @@ class DemandOfStructure:
 
 @result
 class DemandAtScale(DemandOfStructure):
-    """Statistics of a demand over all motions at one scale, as computed by one model."""
+    """Statistics of a demand over all motions at one scale (a stripe of dynamic analyses), by one model."""
 
     model: Annotated[str, "key of the model"]
     unit: Annotated[str, "SI; empty for a pure number"]
@@ -190,7 +194,7 @@ class DemandCurve(DemandOfStructure):
 
 @result
 class SupportExtremes:
-    """Smallest and largest force and largest uplift of a support over motions at the largest scale, by one model."""
+    """Smallest and largest force and largest uplift of a support by one model, over motions at the largest scale."""
 
     structure: Annotated[str, "name"]
     support: Annotated[int, "from 1"]
@@ -239,7 +243,11 @@ class EngineMotions:
 
 @result
 class GroundComponent:
-    """Peak acceleration and velocity of a component of a ground motion: record times `GroundMotion.factor`, scale 1."""
+    """
+    Peak acceleration and velocity of a component of a ground motion.
+
+    The motion is the record times `GroundMotion.factor`, at scale 1.
+    """
 
     axis: Annotated[str, "x, y or z"]
     peak: Annotated[float, "largest acceleration, m/s^2"]
@@ -367,7 +375,7 @@ class EnsembleResult:
         return [each for each in own if each.model == EXACT.key] or own
 
     def list_demands_of_bodies(self, structure: str, quantity: str, scale: float | None = None) -> list[DemandAtScale]:
-        """Return a demand's statistics for every body by the equations, at `scale` (None: the largest)."""
+        """Return the statistics of a demand by the equations, one for every body, at `scale` (None: the largest)."""
         asked = structure, quantity, EXACT.key, self.largest_scale if scale is None else scale
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
@@ -395,5 +403,5 @@ class EnsembleResult:
         return found
 
 
-# Result file of an ensemble: its name, type, what it holds in words, and the command that writes it
-STORED = StoredFile(RESULT_FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")
+# Result file of an ensemble
+STORED = StoredFile(name=RESULT_FILE, kind=EnsembleResult, what="an ensemble", command="phase-resonance ensemble")

@@ -1,4 +1,9 @@
-"""Rows of the tables of demands for page and terminal: every bound, then the envelope of all bounds."""
+"""
+Rows of the tables of demands, for the page and the terminal.
+
+A bound is a structure with the lower or the upper properties of its bearings. A demand has a row for each bound, then
+one for their envelope, which is the worst value over all bounds.
+"""
 
 import math
 import re
@@ -21,8 +26,7 @@ from comparison.study.models import EXACT, SPATIAL
 from reference.measures import Estimate
 from reference.problem import GRAVITY, Outcome
 
-# Name of the table row with the worst values over all bounds (lower, upper) of the bearing properties
-ENVELOPE = "envelope"
+ENVELOPE = "envelope"  # name of the table row with the worst values over all bounds
 # Reason why a motion has no largest demand over the bodies: for one body it is unknown
 MISSING_AT_A_BODY = "not at every place"
 NOT_OF_ALL_MOTIONS = "–"  # text of a cell without a statistic: too few motions, or not all computed
@@ -37,7 +41,7 @@ WORST_COLUMN = 4  # index of a row's cell with the worst value; before it: mean,
 class DemandColumn:
     """Demand that a table shows: that of the isolator or platform, or the largest over the floors."""
 
-    name: str
+    name: str  # the demand in words
     quantity: str
     bodies: str = ""  # where: "" (isolator), "platform" or "floors" (largest over the bodies)
     unit: str = ""  # unit of the numbers shown, "" for the usual one
@@ -50,13 +54,13 @@ MAIN_TABLE_COLUMNS = (
     DemandColumn("displacement over travel", "travel_share"),
     DemandColumn("base shear", "base_shear", unit="kN"),
     DemandColumn("base shear over weight", "base_shear", unit="%"),
-    DemandColumn("platform acceleration, as integrated", "acceleration", "platform"),
-    DemandColumn("platform acceleration, literal supremum", SUPREMUM, "platform"),
-    DemandColumn("floor acceleration, as integrated", "acceleration", "floors"),
-    DemandColumn("floor acceleration, literal supremum", SUPREMUM, "floors"),
-    DemandColumn("largest drift", "drift", "floors"),
-    DemandColumn("largest drift ratio", "drift_ratio", "floors"),
-    DemandColumn("overturning moment at the isolator", "overturning_moment", "platform"),
+    DemandColumn("platform acceleration, as integrated", "acceleration", bodies="platform"),
+    DemandColumn("platform acceleration, literal supremum", SUPREMUM, bodies="platform"),
+    DemandColumn("floor acceleration, as integrated", "acceleration", bodies="floors"),
+    DemandColumn("floor acceleration, literal supremum", SUPREMUM, bodies="floors"),
+    DemandColumn("largest drift", "drift", bodies="floors"),
+    DemandColumn("largest drift ratio", "drift_ratio", bodies="floors"),
+    DemandColumn("overturning moment at the isolator", "overturning_moment", bodies="platform"),
     DemandColumn("largest support force", "support_force_max"),
     DemandColumn("smallest support force", "support_force_min"),
     DemandColumn("uplift of a support", "uplift"),
@@ -72,11 +76,11 @@ MOTION_TABLE_QUANTITIES = (
 
 @dataclass(frozen=True)
 class DemandRow:
-    """Table row: a demand at one bound of the bearing properties, or its worst value over all bounds (envelope)."""
+    """Table row: a demand at one bound of the bearing properties, or its envelope."""
 
-    name: str
+    name: str  # the demand in words
     unit: str
-    bound: str
+    bound: str  # label of the structure, or ENVELOPE
     where: str  # body that has the worst value
     cells: tuple[str, ...]  # texts of mean, fractiles and worst value
     motion: str  # motion that has the worst value
@@ -93,10 +97,11 @@ class DemandRow:
 @dataclass(frozen=True)
 class DemandSummary:
     """
-    Mean, fractiles and worst value of a structure's demand over the motions, with "≥ " or "≤ " if only a bound.
+    Statistics of a structure's demand over the motions, as a table shows them.
 
-    marks: of each, "" of what is known, "≥ " or "≤ " before what is a bound of it, " (of 3)" behind a mean of the
-    motions that have the demand. motion: of the worst value.
+    stripe: all statistics of the demand. numbers: mean, three fractiles and worst value. marks: for each of the
+    numbers, "" if it is known, "≥ " or "≤ " if it is only a lower or upper limit, " (of 3)" if it is a mean of the
+    motions that have the demand. motion: that of the worst value.
     """
 
     structure: Structure
@@ -107,7 +112,12 @@ class DemandSummary:
 
 
 def label_structures(ensemble: EnsembleResult) -> dict[str, str]:
-    """Return a label for each structure by name: its name, or just the values that differ, if all are of one file."""
+    """
+    Return a label for each structure by name.
+
+    It is the name, such as "house[lower bound, friction=0.05]", or if all structures are of one file, only those of the
+    values between brackets that differ.
+    """
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
     parts = [re.split(r", |\+(?!\d)", text) for text in values]
@@ -148,7 +158,7 @@ def find_largest_over_bodies_by_motion(
     """
     Return by motion the largest value of a demand over the bodies, by one model, and the body that has it.
 
-    NaN where a body has none. bodies: over these; over all without it.
+    It is NaN where a body has no value. bodies: those to take it over, None for all.
     """
     found: dict[str, list[tuple[Estimate, int | None]]] = {}
     for body, numbers in ensemble.values_by_body(structure, quantity, model, scale).items():
@@ -159,18 +169,22 @@ def find_largest_over_bodies_by_motion(
 
 
 def _find_largest_over_bodies(places: Sequence[tuple[Estimate, int | None]]) -> tuple[Estimate, int | None]:
-    """Return the largest value and its body; its error: largest (value + error) minus it. NaN, None if any unknown."""
+    """
+    Return the largest of the values, with its error, and its body; NaN and None if any value is unknown.
+
+    The error is how far the largest rises if each value rises by its own error.
+    """
     if not all(math.isfinite(number.value) for number, _ in places):
         return Estimate(math.nan, math.nan), None
     number, body = max(places, key=lambda place: place[0].value)
-    high = max(each.value + each.error for each, _ in places)  # errors raise the largest no less than they lower it
+    high = max(each.value + each.error for each, _ in places)  # Errors raise the largest no less than they lower it.
     return Estimate(number.value, high - number.value), body
 
 
 def summarize_over_bodies(
     ensemble: EnsembleResult, structure: Structure, quantity: str, scale: float
 ) -> DemandAtScale | None:
-    """Return the statistics over motions of a demand's largest value over the bodies, with the worst body."""
+    """Return the statistics over the motions of the largest value of a demand over the bodies, with the worst body."""
     own = ensemble.list_demands_of_bodies(structure.name, quantity, scale)
     largest = find_largest_over_bodies_by_motion(ensemble, structure.name, quantity, EXACT.key, scale)
     if not own or not largest:
@@ -211,9 +225,9 @@ def make_profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> 
 
 def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[DemandRow, list[tuple[str, str]]]]:
     """
-    Return for each story and structure the table row along x, and four cells: mean and largest along x, along y.
+    Return for each story and structure the table row along x, and four cells: mean and largest along x, then along y.
 
-    Each value with the motion of a largest one, and in an envelope its bound.
+    A cell is the text of the value, and what it is from: the motion of a largest value and, in an envelope, the bound.
     """
     along_x, along_y = (make_profile_rows(ensemble, f"{demand}_{axis}", ensemble.largest_scale) for axis in ("x", "y"))
     return [
@@ -223,7 +237,7 @@ def make_direction_rows(ensemble: EnsembleResult, demand: str) -> list[tuple[Dem
 
 
 def _word_source(row: DemandRow, column: int) -> str:
-    """Return what a table cell is from: the motion of a worst value and, in an envelope, the governing bound."""
+    """Return what a table cell is from: the motion of a worst value and, in an envelope, the bound that has it."""
     motion = row.motion if column == WORST_COLUMN else ""
     return ", ".join(filter(None, [motion, row.bounds[column] if row.bounds else ""]))
 
@@ -239,7 +253,7 @@ def _select_motion_columns(ensemble: EnsembleResult) -> list[DemandColumn]:
 
 
 def _is_motion_column(shown: DemandColumn, quantity: str) -> bool:
-    """Return whether `shown` is the column of a demand in the table of motions: not in %, not of the platform alone."""
+    """Return whether a column of a demand is that in the table of motions, not one in % or of the platform alone."""
     return shown.quantity == quantity and shown.unit != "%" and shown.bodies != "platform"
 
 
@@ -250,7 +264,11 @@ def make_motion_heads(ensemble: EnsembleResult) -> list[str]:
 
 
 def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str], str]]:
-    """Return rows by structure and motion at the largest scale: motion, structure, demands (equations), outcome."""
+    """
+    Return the rows of the table with every structure and motion at the largest scale.
+
+    A row is the motion, the label of the structure, the texts of the demands by the equations, and the outcome.
+    """
     named, rows = label_structures(ensemble), []
     ended = {(each.structure, each.motion, each.scale): each.status for each in ensemble.ended}
     for structure in ensemble.structures:
@@ -274,7 +292,12 @@ def make_motion_rows(ensemble: EnsembleResult) -> list[tuple[str, str, list[str]
 def _make_rows(
     ensemble: EnsembleResult, shown: DemandColumn, read: Callable[[Structure], DemandAtScale | None], scale: float
 ) -> Iterator[DemandRow]:
-    """Yield the table rows of a demand: one for each structure, then, if several, their envelope (worst values)."""
+    """
+    Yield the table rows of a demand: one for each structure, then, if there are several, their envelope.
+
+    read: returns the statistics of the demand of a structure, or None. A demand that only the engine has gets other
+    rows.
+    """
     named, found = label_structures(ensemble), []
     for structure in ensemble.structures:
         stripe = read(structure)
@@ -290,7 +313,7 @@ def _make_rows(
 def statistics_of_column(
     ensemble: EnsembleResult, shown: DemandColumn, scale: float, structure: Structure
 ) -> DemandAtScale | None:
-    """Return the statistics of a column's demand for a structure; for "floors", of the largest over the bodies."""
+    """Return the statistics of the demand of a column for a structure; None where no model has computed it."""
     if shown.bodies == "floors":
         return summarize_over_bodies(ensemble, structure, shown.quantity, scale)
     own = ensemble.list_demands_of_bodies(structure.name, shown.quantity, scale)
@@ -304,7 +327,7 @@ def statistics_of_column(
 def read_column_values(
     ensemble: EnsembleResult, structure: Structure, shown: DemandColumn, model: str
 ) -> dict[str, tuple[Estimate, int | None]]:
-    """Return by name of the motion a column's demand at the largest scale by one model, and the body that has it."""
+    """Return by motion the demand of a column at the largest scale by one model, and the body that has it."""
     bodies = {"": (None,), "platform": (PLATFORM_BODY,)}.get(shown.bodies)
     return find_largest_over_bodies_by_motion(
         ensemble, structure.name, shown.quantity, model, ensemble.largest_scale, bodies
@@ -329,15 +352,17 @@ def find_worst_value_and_motion(stripe: DemandAtScale) -> tuple[Statistic, str]:
 
 def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSummary:
     """
-    Return a demand's statistics, with marks where motions without a value make them only bounds.
+    Return the statistics of a demand, with marks on those that are only lower or upper limits.
 
-    The worst value is at least that of the motions that have one. A displacement under a motion that reached the
-    travel is at least the travel.
+    They are that where motions lack a value. The worst value is then no better than that of the motions that have one,
+    and a displacement under a motion that reached the travel is at least the travel.
     """
     worst, motion = find_worst_value_and_motion(stripe)
     numbers = [stripe.mean, *stripe.fractiles, worst]
     if not stripe.known:
-        return DemandSummary(structure, stripe, tuple(numbers), ("",) * len(numbers), motion)
+        return DemandSummary(
+            structure=structure, stripe=stripe, numbers=tuple(numbers), marks=("",) * len(numbers), motion=motion
+        )
     mean, worst = stripe.known
     limit = {"displacement": structure.building and structure.building.travel, "travel_share": 1.0}.get(stripe.quantity)
     if limit and {*stripe.reasons} == {Outcome.TRAVEL_REACHED.value}:
@@ -345,16 +370,26 @@ def summarize_demand(structure: Structure, stripe: DemandAtScale) -> DemandSumma
         least = ((mean.value or 0.0) * stripe.answered + limit * lost) / stripe.motions
         reached = Statistic(limit, None)
         numbers = [Statistic(least, mean.error), *(reached if n.value is None else n for n in numbers[1:-1]), reached]
-        return DemandSummary(structure, stripe, tuple(numbers), _bound_marks("≥ ", stripe), "")
+        return DemandSummary(
+            structure=structure,
+            stripe=stripe,
+            numbers=tuple(numbers),
+            marks=_bound_marks("≥ ", stripe),
+            motion="",
+        )
     bound = "≤ " if stripe.quantity in SMALLEST_IS_WORST else "≥ "
     numbers = [mean, *numbers[1:-1], worst]
     return DemandSummary(
-        structure, stripe, tuple(numbers), (f" (of {stripe.answered})", *("",) * 3, bound), stripe.known_motion
+        structure=structure,
+        stripe=stripe,
+        numbers=tuple(numbers),
+        marks=(f" (of {stripe.answered})", *("",) * 3, bound),
+        motion=stripe.known_motion,
     )
 
 
 def _bound_marks(mark: str, stripe: DemandAtScale) -> tuple[str, ...]:
-    """Return marks of mean, fractiles and worst value: `mark` (such as "≥ ", a bound), but "" for known fractiles."""
+    """Return the marks of mean, fractiles and worst value: `mark`, such as "≥ ", but "" for known fractiles."""
     return mark, *("" if own.value is not None else mark for own in stripe.fractiles), mark
 
 
@@ -366,7 +401,7 @@ def add_mark(text: str, mark: str) -> str:
 
 
 def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: bool) -> DemandRow:
-    """Return the table row of a demand of one structure; is_first: whether no row above names the demand."""
+    """Return the table row of a demand of one structure. is_first: whether no row above names the demand."""
     structure, stripe = told.structure, told.stripe
     unit, factor = unit_of_column(shown, structure)
     motions = f"{stripe.answered} of " * (stripe.answered < stripe.motions) + str(stripe.motions)
@@ -376,14 +411,24 @@ def _demand_row(shown: DemandColumn, bound: str, told: DemandSummary, is_first: 
         add_mark(word_cell(each, factor, column, stripe.motions, stripe.quantity), mark)
         for column, (each, mark) in enumerate(zip(told.numbers, told.marks))
     )
-    return DemandRow(shown.name, unit, bound, where, cells, told.motion, motions, is_first)
+    return DemandRow(
+        name=shown.name,
+        unit=unit,
+        bound=bound,
+        where=where,
+        cells=cells,
+        motion=told.motion,
+        motions=motions,
+        is_first=is_first,
+    )
 
 
 def word_cell(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
     """
-    Return a table cell: text of a demand's mean, fractile or worst value (by `column`) over so many motions.
+    Return the text of a table cell with a statistic of a demand over so many motions.
 
-    Of few motions a fractile lies beyond the outermost of them, and is left out: 16 % of three, but not of four.
+    column: 0 for the mean, 1 to 3 for the fractiles, 4 for the worst value. A fractile that lies beyond the outermost
+    motion is left out: 16 % of three motions, but not of four.
     """
     if column in (0, WORST_COLUMN):
         text = word_value(number.value, number.error, factor)
@@ -399,7 +444,7 @@ def word_cell(number: Statistic, factor: float, column: int, motions: int, quant
 
 
 def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: dict[str, str]) -> DemandRow:
-    """Return the envelope row: for each statistic the worst over the structures, marked if one is unknown."""
+    """Return the row of the envelope: for each statistic the worst over the structures, marked if one is unknown."""
     sign, bound = (-1.0, "≤ ") if shown.quantity in SMALLEST_IS_WORST else (1.0, "≥ ")
     cells, bounds, at = [], [], found[0]
     for column in range(len(at.numbers)):
@@ -423,12 +468,21 @@ def _envelope_row(shown: DemandColumn, found: Sequence[DemandSummary], named: di
     )
     short = len(bounds) == len(cells) and max(map(len, bounds)) <= MAX_BOUND_LETTERS
     said = at.motion if short or not at.motion else f"{at.motion}, {named[at.structure.name]}"
-    about = shown.name, unit_of_column(shown, at.structure)[0], ENVELOPE, where, tuple(cells), said, ""
-    return DemandRow(*about, is_first=False, bounds=tuple(bounds) if short else ())
+    return DemandRow(
+        name=shown.name,
+        unit=unit_of_column(shown, at.structure)[0],
+        bound=ENVELOPE,
+        where=where,
+        cells=tuple(cells),
+        motion=said,
+        motions="",
+        is_first=False,
+        bounds=tuple(bounds) if short else (),
+    )
 
 
 def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator[DemandRow]:
-    """Yield a row per structure of a demand that only the engine computes: its largest value, no other statistics."""
+    """Yield a row for each structure of a demand that only the engine computes, with its largest value alone."""
     first = True
     for structure in ensemble.structures:
         values = ensemble.values_at_largest_scale(structure.name, shown.quantity, None, ensemble.engine.model)
@@ -440,15 +494,16 @@ def _make_engine_rows(ensemble: EnsembleResult, shown: DemandColumn) -> Iterator
         worst = word_value(known[motion].value, known[motion].error, factor)
         cells = (*(NOT_OF_ALL_MOTIONS,) * 4, worst)
         motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"
-        about = (
-            shown.name,
-            unit,
-            label_structures(ensemble)[structure.name],
-            "",
-            cells,
-            motion if known[motion].value else "",
+        yield DemandRow(
+            name=shown.name,
+            unit=unit,
+            bound=label_structures(ensemble)[structure.name],
+            where="",
+            cells=cells,
+            motion=motion if known[motion].value else "",
+            motions=motions,
+            is_first=first,
         )
-        yield DemandRow(*about, motions, is_first=first)
         first = False
 
 

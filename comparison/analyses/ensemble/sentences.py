@@ -79,7 +79,7 @@ NOT_MODELED = (  # what no model has; docs/guide/building.md explains each, begi
 
 
 def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
-    """Return a sentence for each thing not modeled; that on vertical motion counts the motions that have it."""
+    """Return the sentences on what no model has. That on vertical motion counts the motions that have it."""
     if not ensemble.suite or not all(each.components for each in ensemble.suite):
         return list(NOT_MODELED)
     count = sum(any(one.axis == "z" for one in each.components) for each in ensemble.suite)
@@ -88,7 +88,7 @@ def list_not_modeled(ensemble: EnsembleResult) -> list[str]:
 
 
 def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> list[str]:
-    """Return the sentence that `word` makes for each structure, after its label; only one if all are the same."""
+    """Return the sentence that `word` makes for each structure, after its label, or only one if all are the same."""
     said = {each.name: word(each) for each in ensemble.structures}
     if len({*said.values()}) == 1:
         return list(filter(None, said.values()))[:1]
@@ -96,7 +96,7 @@ def say_of_all(ensemble: EnsembleResult, word: Callable[[Structure], str]) -> li
 
 
 def word_heading(ensemble: EnsembleResult) -> str:
-    """Return the page's heading: titles of the buildings, number of motions; largest scale, if several or not 1."""
+    """Return the heading of the page: titles of the buildings, number of motions, and the largest scale if it tells."""
     titles = ", ".join(dict.fromkeys(each.title for each in ensemble.structures))
     at = f", scale {ensemble.largest_scale:g}" if len(ensemble.scales) > 1 or ensemble.largest_scale != 1.0 else ""
     return f"{titles}: {word_motion_count(ensemble.motions)}{at}"
@@ -108,7 +108,12 @@ def word_motion_count(count: int) -> str:
 
 
 def answer_sentence(ensemble: EnsembleResult) -> str:
-    """Return the main result in words: limits met; mean and largest displacement and base shear, worst structure."""
+    """
+    Return the main result in words.
+
+    It has the verdicts on limits, the motions without a value, mean and largest displacement and base shear of the
+    structure where they are worst, and the outcomes.
+    """
     said = []
     for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
         found, unknown = [], []
@@ -148,7 +153,7 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
 
 
 def limits_sentence(ensemble: EnsembleResult) -> str:
-    """Say how many limits are met, which are not and by how much, and which are not compared; "" without limits."""
+    """Return a sentence on how many limits are met, which are not, and which are not compared; "" without limits."""
     if not ensemble.limits:
         return ""
     counts = count_verdicts(each.verdict for each in ensemble.limits)
@@ -161,7 +166,7 @@ def limits_sentence(ensemble: EnsembleResult) -> str:
 
 
 def _list_limits(ensemble: EnsembleResult, verdict: str) -> str:
-    """Return in words the limits with this verdict, with structures and excess of the demands; "" if none has it."""
+    """Return in words the limits with this verdict, with the structures and excesses; "" if no limit has it."""
     found: dict[str, list[str]] = {}
     for each in ensemble.limits:
         if each.verdict == verdict:
@@ -244,13 +249,13 @@ def outcomes_sentence(ensemble: EnsembleResult) -> str:
 
 
 def target_sentence(target: TargetSpectrum) -> str:
-    """Return a sentence: how the motions are scaled to the target spectrum, over which periods."""
+    """Return a sentence on how the motions are scaled to the target spectrum, and over which periods."""
     between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
 
 def isolator_sentence(structure: Structure) -> str:
-    """Return a sentence on a structure's equivalent linear isolator: period, damping, re-centering; "" without one."""
+    """Return a sentence on the equivalent linear isolator of a structure; "" without one."""
     if (at := structure.isolator) is None:
         return ""
     return (
@@ -271,7 +276,11 @@ def restoring_sentence(ensemble: EnsembleResult) -> str:
 
 
 def supremum_sentence(places: Collection[str], differing: Collection[str]) -> str:
-    """Return a sentence: floors where peak acceleration as integrated and in the limit v -> 0+ agree; "" if at none."""
+    """
+    Return a sentence on the floors where the literal supremum is the acceleration as integrated; "" if at none.
+
+    places: all floors. differing: those where the two differ.
+    """
     if len(differing) == len(places):
         return ""
     where = "At the floors that are left out" if differing else "At every floor"
@@ -279,7 +288,7 @@ def supremum_sentence(places: Collection[str], differing: Collection[str]) -> st
 
 
 def below_contact_sentence(structure: Structure) -> str:
-    """Return a warning that the platform hangs below the sliding contact, as a misread height causes; or ""."""
+    """Return a warning if the platform is below the sliding contact, as if `height` were misunderstood; else ""."""
     building = structure.building
     if building is None or not building.heights or building.heights[0] >= 0.0:
         return ""
@@ -290,7 +299,7 @@ def below_contact_sentence(structure: Structure) -> str:
 
 
 def engine_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return sentences: which motions the engine computed for each structure, and for which reasons."""
+    """Return sentences on which motions the engine computed for each structure, and for which reasons."""
     engine, said = ensemble.engine, []
     for structure in ensemble.structures:
         own = [each for each in engine.motions if each.structure == structure.name]
@@ -314,7 +323,7 @@ def _word_status(status: str) -> str:
 
 
 def support_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return a sentence for each model: largest and smallest support force and uplift, with support and motion."""
+    """Return a sentence for each model on the largest and smallest support force and the largest uplift."""
     said = []
     for model in dict.fromkeys(each.model for each in ensemble.supports):
         rows = [each for each in ensemble.supports if each.model == model]
@@ -339,7 +348,11 @@ def word_support_motions(ensemble: EnsembleResult, supports: SupportExtremes) ->
 
 
 def displaced_weight_sentence(structure: Structure) -> str:
-    """Return sentences: bearing part that moves with the platform, load by displaced weight; "" without supports."""
+    """
+    Return sentences on the displaced weight, that is the weight off the middle of the bearings; "" without supports.
+
+    They say which part of the bearing moves with the platform, and with which moment the weight loads the supports.
+    """
     building = structure.building
     if building is None or not building.supports:
         return ""
@@ -356,10 +369,12 @@ def displaced_weight_sentence(structure: Structure) -> str:
 
 
 def damping_sentence(structure: Structure) -> str:
-    """Return a sentence on stiffness-proportional damping, if the modal ratios show it; "" for any other damping."""
+    """Return a sentence on damping in proportion to the stiffness, if the modal ratios show it; else ""."""
     building = structure.building
     if building is None:
         return ""
+    # Stiffness-proportional damping has ratios in proportion to the frequency: ratio times period is equal in all
+    # modes.
     products = [
         [ratio * period for ratio, period in zip(*axis)]
         for axis in zip(building.modal_damping, building.fixed_base_period)
@@ -376,7 +391,7 @@ def damping_sentence(structure: Structure) -> str:
 
 
 def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
-    """Yield phrases: largest and smallest support force, and largest uplift, with support and motion."""
+    """Yield phrases on the largest and smallest support force and the largest uplift, with support and motion."""
     for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
         known = [row for row in rows if getattr(row, name).value is not None]
         if not known:
@@ -403,7 +418,11 @@ def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Say which motions lack which demands at the largest scale, and why; not those that reach the travel limit."""
+    """
+    Return sentences on which motions lack which demands at the largest scale, and why.
+
+    Motions that reach the travel have a sentence of their own, `travel_sentence`.
+    """
     stripes = {
         shown.name: found
         for shown in MAIN_TABLE_COLUMNS
@@ -430,7 +449,7 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
 
 
 def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
-    """Return which motions of every structure lack which demands, each sentence after the structure's label."""
+    """Return the sentences of `missing_sentences` for every structure, each after the label of the structure."""
     return [
         f"{word_bound(ensemble, each.name, '{}: ')}{line}"
         for each in ensemble.structures
@@ -439,7 +458,7 @@ def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
 
 
 def digest_sentence(ensemble: EnsembleResult) -> str:
-    """Return a sentence with the first digits of SHA-256 of scene files and of each motion's samples; or ""."""
+    """Return a sentence with the SHA-256 digests of scene files and samples, their first digits; "" without any."""
     scenes = [f"{Path(source).name} {digest[:DIGITS]}" for source, digest in ensemble.run.get("scenes", {}).items()]
     motions = [f"{each.motion} {each.digest[:DIGITS]}" for each in ensemble.suite if each.digest]
     said = [f"scene files: {', '.join(scenes)}"] * bool(scenes)
@@ -448,7 +467,7 @@ def digest_sentence(ensemble: EnsembleResult) -> str:
 
 
 def ground_sentence(ensemble: EnsembleResult) -> str:
-    """Return a sentence: the ranges of peak ground acceleration and duration of the motions."""
+    """Return a sentence on the ranges of peak ground acceleration and duration of the motions."""
     peaks, lengths = [each.peak for each in ensemble.suite], [each.duration for each in ensemble.suite]
     if not peaks:
         return ""

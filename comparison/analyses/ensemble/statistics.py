@@ -25,7 +25,7 @@ def list_quantities(points: Sequence[MotionDemandsAtScale]) -> list[Quantity]:
 
 
 def summarize_demands(points: EnsemblePoints) -> Iterator[result.DemandAtScale]:
-    """Yield statistics of every demand at every scale: by the equations, and by models that computed all motions."""
+    """Yield the statistics of every demand at every scale, by the equations and by models that computed all motions."""
     yield from _summarize_points(points.equations)
     motions = {
         (name, scale): len(own) for (name, scale), own in _group_by_structure_and_scale(points.equations).items()
@@ -46,7 +46,7 @@ def _group_by_structure_and_scale(
 
 
 def _summarize_points(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.DemandAtScale]:
-    """Yield statistics over motions of every demand; a motion without a value counts as worse than all others."""
+    """Yield the statistics over the motions of every demand of every structure, at each scale."""
     for name, own in group_rows_by(points, "member.structure").items():
         for quantity in list_quantities(own):
             for scale, at_scale in sorted(group_rows_by(own, "member.scale").items()):
@@ -63,7 +63,8 @@ def summarize_motions(
     """
     Return mean, fractiles, largest and smallest value of a demand over the motions.
 
-    about: first fields of `DemandAtScale`. numbers: demand by motion. lacking: number of motions without it by reason.
+    about: structure, quantity, body, model, unit and scale, the first fields of `DemandAtScale`. numbers: the demand by
+    motion. lacking: number of motions without it by reason. Such a motion counts as worse than all others.
     """
     every, values = list(numbers.values()), [number.value for number in numbers.values()]
     is_smallest = about[1] in SMALLEST_IS_WORST
@@ -79,17 +80,23 @@ def summarize_motions(
         """Return the name of the first motion whose demand has this value, "" if none has."""
         return list(numbers)[values.index(number.value)] if number.value in values else ""
 
-    motions = (
-        motion_with_value(largest),
-        motion_with_value(smallest),
-        of_known,
-        motion_with_value(of_known[1]) if of_known else "",
+    return result.DemandAtScale(
+        *about,
+        answered=answered,
+        mean=mean,
+        fractiles=fractiles,
+        largest=largest,
+        smallest=smallest,
+        reasons=dict(lacking),
+        largest_motion=motion_with_value(largest),
+        smallest_motion=motion_with_value(smallest),
+        known=of_known,
+        known_motion=motion_with_value(of_known[1]) if of_known else "",
     )
-    return result.DemandAtScale(*about, answered, mean, fractiles, largest, smallest, dict(lacking), *motions)
 
 
 def split_quantity(quantity: Quantity) -> tuple[str, int | None]:
-    """Split a key (demand, body number): return the demand's name and the body, None for the isolator."""
+    """Return the name of a demand and its body, None for the isolator."""
     return quantity[0], quantity[1] or None
 
 
@@ -101,14 +108,22 @@ def make_statistic(number: Estimate) -> result.Statistic:
 def compute_mean_and_fractiles(
     numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf
 ) -> list[result.Statistic]:
-    """Return mean of numbers (None if one is NaN) and fractiles at `shares` (NaN as `worst`), each with its error."""
+    """
+    Return the mean of numbers, then their fractiles at `shares`, each with its error.
+
+    The mean has the value None if a number is NaN. In the fractiles NaN counts as `worst`.
+    """
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
     fractiles = [compute_fractile_with_error(numbers, share, worst) for share in shares]
     return [make_statistic(each) for each in (Estimate(value, error), *fractiles)]
 
 
 def compute_fractile_with_error(numbers: Sequence[Estimate], share: float, worst: float = math.inf) -> Estimate:
-    """Return a fractile of numbers, NaN counting as `worst`, and its error: how far it moves if all move by theirs."""
+    """
+    Return a fractile of numbers, in which NaN counts as `worst`, with its error.
+
+    The error is how far the fractile moves if all numbers rise, or all fall, by their errors.
+    """
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (
@@ -118,7 +133,11 @@ def compute_fractile_with_error(numbers: Sequence[Estimate], share: float, worst
 
 
 def summarize_spectra(points: Sequence[MotionDemandsAtScale]) -> Iterator[result.FloorSpectrumStatistics]:
-    """Yield statistics over motions of the floor spectrum of each body at the largest scale; larger of x and y."""
+    """
+    Yield the statistics over the motions of the floor spectrum of each body at the largest scale.
+
+    The spectrum of a motion is the larger of those along x and y.
+    """
     top = max((point.member.scale for point in points), default=math.nan)
     for name, own in group_rows_by(
         [point for point in points if point.member.scale == top], "member.structure"
@@ -132,12 +151,20 @@ def summarize_spectra(points: Sequence[MotionDemandsAtScale]) -> Iterator[result
             (p.spectra.acceleration.max(axis=1), p.spectra.error.max(axis=1)) if p.spectra else nothing for p in own
         ]
         for body in range(bodies):
-            # axes of this array: period, motion, then value and error
+            # Axes of this array: period, motion, then value and error
             columns = np.array(values)[:, :, body].transpose(2, 0, 1).tolist()
             numbers = ([Estimate(*pair) for pair in column] for column in columns)
             mean, *shares, largest = zip(*(compute_mean_and_fractiles(column, (*FRACTILES, 1.0)) for column in numbers))
-            about = name, body + 1, top, known[0].damping, known[0].period.tolist()
-            yield result.FloorSpectrumStatistics(*about, mean, shares, largest)
+            yield result.FloorSpectrumStatistics(
+                structure=name,
+                body=body + 1,
+                scale=top,
+                damping=known[0].damping,
+                period=known[0].period.tolist(),
+                mean=mean,
+                fractiles=shares,
+                largest=largest,
+            )
 
 
 def make_demand_curves(points: EnsemblePoints) -> Iterator[result.DemandCurve]:
@@ -152,18 +179,22 @@ def make_demand_curves(points: EnsemblePoints) -> Iterator[result.DemandCurve]:
                 for motion, at in by_motion.items() if quantity in has else ():
                     at = sorted(at, key=lambda point: point.member.scale)
                     numbers = [make_statistic(point.estimate(quantity)) for point in at]
-                    values, errors = [each.value for each in numbers], [each.error for each in numbers]
-                    scales = [point.member.scale for point in at]
                     yield result.DemandCurve(
-                        name, *split_quantity(quantity), at[0].model, motion, scales, values, errors
+                        name,
+                        *split_quantity(quantity),
+                        model=at[0].model,
+                        motion=motion,
+                        scales=[point.member.scale for point in at],
+                        values=[each.value for each in numbers],
+                        errors=[each.error for each in numbers],
                     )
 
 
 def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtremes]:
     """
-    Yield for each support, over the motions at the largest scale: smallest and largest force, and their motions.
+    Yield for each support its smallest and largest force and largest uplift over the motions at the largest scale.
 
-    These are by the equations and statics, and by the spatial model for the motions that it computed.
+    They are by the equations and statics, and by the spatial model over the motions that it computed.
     """
     top = max((point.member.scale for point in points.equations), default=math.nan)
     for model, own in {"": points.equations, **points.compared}.items():
@@ -171,7 +202,7 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
             known = [each for each in at if each.forces and each.forces.support_max]
             places = at[0].member.scene.support_places
             if not known or places is None or (model and known[0].forces and known[0].forces.uplift is None):
-                continue  # no support forces, or by statics only: these are listed for the exact equations alone
+                continue  # No support forces, or those of statics, which are listed for the exact equations alone
             for number in range(len(places)):
                 names = "support_min", "support_max", "uplift"
                 small, large, gaps = ([_support_estimate(each, key, number) for each in known] for key in names)
@@ -179,9 +210,19 @@ def find_support_extremes(points: EnsemblePoints) -> Iterator[result.SupportExtr
                 largest, high = _find_governing_motion(large, known, 1.0)
                 gap, _ = _find_governing_motion(gaps, known, 1.0)
                 x, y = map(float, places[number])
-                count = sum(math.isfinite(each.value) for each in large)
-                about = name, number + 1, x, y, known[0].model, count
-                yield result.SupportExtremes(*about, smallest, low, largest, high, gap)
+                yield result.SupportExtremes(
+                    structure=name,
+                    support=number + 1,
+                    x=x,
+                    y=y,
+                    model=known[0].model,
+                    motions=sum(math.isfinite(each.value) for each in large),
+                    smallest=smallest,
+                    smallest_motion=low,
+                    largest=largest,
+                    largest_motion=high,
+                    uplift=gap,
+                )
 
 
 def _support_estimate(point: MotionDemandsAtScale, name: str, number: int) -> Estimate:

@@ -17,7 +17,11 @@ CONTROL_STARTS = ("\t", "\r", "\n")  # A text that begins with one of these may 
 
 
 def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[dict[str, object]]:
-    """Return a row for each motion, structure, scale and model: demands and errors by column name, None if unknown."""
+    """
+    Return a row for each structure, motion, scale and model.
+
+    A row has the demands and their errors by name of the column, None where unknown.
+    """
     named = label_structures(ensemble)
     listed = list_quantities(points.all_points)
     units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
@@ -46,7 +50,7 @@ def make_table_rows(points: EnsemblePoints, ensemble: EnsembleResult) -> list[di
 
 
 def format_table(points: EnsemblePoints, ensemble: EnsembleResult) -> str:
-    """Return the content of ensemble.csv; an apostrophe precedes a text that a spreadsheet takes for a formula."""
+    """Return the content of ensemble.csv."""
 
     def cell(value: object) -> object:
         """Return a value of the table; a text that looks like a formula gets an apostrophe in front."""

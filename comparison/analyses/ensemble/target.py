@@ -16,11 +16,13 @@ from reference.records.numerals import UNITS
 from reference.support.arguments import Range
 from reference.support.files import read_file
 
-# Number of periods (log-spaced) for the least-squares fit of motions to the target spectrum, and for its plot
+# Numbers of periods, evenly spaced in the logarithm, at which motions are fitted to the target and at which it is drawn
 FITTED_PERIODS, DRAWN_PERIODS = 40, 60
 MAX_FILE_BYTES = 2**20  # bytes, largest size of a file with a target spectrum
-ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}  # by heading: factor to m/s^2
-PERIODS, LARGEST = Range(1e-3, 1e3, "s"), 1e6  # admissible periods above 0; largest acceleration, m/s^2, of a target
+# For each heading of a column of accelerations: factor from its unit to m/s^2
+ACCELERATION_HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
+PERIODS = Range(1e-3, 1e3, "s")  # admissible periods above 0
+LARGEST = 1e6  # m/s^2, largest acceleration of a target
 FILE_RULE = (  # rule for a file with a target spectrum, as error messages state it
     "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods, "
     f"{PERIODS.text} s, with accelerations above 0 and at most {LARGEST:g} m/s^2"
@@ -28,7 +30,7 @@ FILE_RULE = (  # rule for a file with a target spectrum, as error messages state
 
 
 def read_target(file: str) -> tuple[Array, Array]:
-    """Read a target spectrum: return periods above 0, s, and pseudo-accelerations, m/s^2. Raises SceneError."""
+    """Return the periods above 0, s, and pseudo-accelerations, m/s^2, of a file. Raises SceneError."""
     try:
         rows = [row for row in csv.reader(read_file(file, MAX_FILE_BYTES).decode("utf-8-sig").splitlines()) if row]
         first, second = ("".join(cell.split()).lower() for cell in rows[0])
@@ -48,7 +50,12 @@ def read_target(file: str) -> tuple[Array, Array]:
 def match_spectrum(
     members: Sequence[EnsembleMember], file: str, ends: Sequence[str] | None
 ) -> tuple[tuple[EnsembleMember, ...], TargetSpectrum]:
-    """Return the members scaled to fit a target spectrum between two periods, s, and the target. Raises SceneError."""
+    """
+    Return the members, scaled so that the spectra of their motions fit a target spectrum, and the target.
+
+    file: has the target. ends: texts of the two periods, s, between which the spectra are fitted; None for those of the
+    file. Raises SceneError.
+    """
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"
     low, high = (read_number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])
@@ -71,8 +78,14 @@ def match_spectrum(
                 raise SceneError(member.scene.name, "--target", file, "the motion has no horizontal acceleration")
             factor = factor_for_spectrum(time, ground, compared, target(compared))
             spectrum = factor * response_spectrum(time, ground, drawn)
-            found[key] = MatchedMotion(member.motion, factor, spectrum.tolist())
+            found[key] = MatchedMotion(motion=member.motion, factor=factor, acceleration=spectrum.tolist())
         factor = found[key].factor
         scene = member.scene.with_values({SCALE_KEY: member.scale * factor, "name": member.scene.name})
         scaled.append(replace(member, scene=scene, factor=factor))
-    return tuple(scaled), TargetSpectrum(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))
+    return tuple(scaled), TargetSpectrum(
+        low=low,
+        high=high,
+        period=drawn.tolist(),
+        acceleration=target(drawn).tolist(),
+        motions=list(found.values()),
+    )

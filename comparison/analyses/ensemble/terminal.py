@@ -30,7 +30,7 @@ from comparison.study.models import EXACT
 
 
 def print_equations(console: Console, ensemble: EnsembleResult) -> None:
-    """Print the demands by the equations and the outcomes; if printing a part fails, one line says so."""
+    """Print the demands by the equations and the outcomes. If printing a part fails, one line says so."""
     parts: dict[str, Callable[[], None]] = {
         "factors of the motions": partial(_print_factors, console, ensemble),
         "demands": partial(_print_demands, console, ensemble),
@@ -41,7 +41,11 @@ def print_equations(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def print_engine(console: Console, ensemble: EnsembleResult) -> None:
-    """Print engine motions, ratios of their demands to the equations', support forces; a line if a part fails."""
+    """
+    Print what the engine adds: its motions, ratios of its demands to those of the equations, support forces, limits.
+
+    If printing a part fails, one line says so.
+    """
     parts: dict[str, Callable[[], None]] = {
         "motions of the engine": lambda: print_lines(console, engine_sentences(ensemble)),
         "table of models": partial(_print_model_ratios, console, ensemble),
@@ -82,7 +86,11 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _cells_of_row(row: DemandRow) -> list[str]:
-    """Return the texts of a row for the terminal: only the mean with its error; motion and place of the worst value."""
+    """
+    Return the texts of a row for the terminal.
+
+    Only the mean has its error. The last text is the motion and place of the worst value.
+    """
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     return [row.name, row.unit, mean, *values, ", ".join(filter(None, [row.motion, row.where, *row.bounds[-1:]]))]

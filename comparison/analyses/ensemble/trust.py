@@ -26,8 +26,8 @@ MODEL_TITLES = {  # names of the models in the table of model ratios, by key
     TRANSLATIONAL.key: "translational engine",
     SPATIAL.key: "spatial engine",
 }
-# Names of main-table demands without a row in the table of model ratios: each is a multiple of another demand, is zero
-# in most motions, or is a peak that includes the limit of vanishing slip speed, which engines do not compute.
+# Names of the demands of the main table that the table of model ratios leaves out. Each is a multiple of another
+# demand, or is zero in most motions, or is a literal supremum, which engines do not compute.
 DEMANDS_WITHOUT_MODEL_RATIO = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support", "platform acceleration, literal supremum", "floor acceleration, literal supremum",
@@ -35,16 +35,21 @@ DEMANDS_WITHOUT_MODEL_RATIO = (
 HIDDEN_BY_ROUNDING = 1e-4  # relative difference below which the two decimals of percent in the table show none
 # Statistics that are extrapolated from the engine's motions to all: name, and index in a row of the main table
 EXTRAPOLATED_STATISTICS = ("mean", 0), ("84 %", 3), ("largest", 4)
-# Statistics extrapolated of a smallest support force, whose low values are the unfavorable ones: name, index in a row
+# The same of a smallest support force, whose low values are the worst
 SMALLEST_FORCE_STATISTICS = (("mean", 0), ("16 %", 1), ("smallest", 4))
 MIN_SPREAD_MOTIONS = 2  # smallest number of motions over which a ratio has a spread
-# Words of a sentence on how models differ, by index: the number of model differences that it lists
+# Words for a number of differences between models, by this number
 THING_COUNTS = ("", "one thing is", "two things are", "three things are", "four things are")
 
 
 @dataclass(frozen=True)
 class ModelRatio:
-    """Ratio of a demand by one model to that by another: mean, smallest and largest over the motions that both have."""
+    """
+    Ratio of a demand by one model to that by another, over the motions that both have.
+
+    mean, smallest, largest: over these motions. motions: their number. smallest_motion, largest_motion: those that have
+    the smallest and the largest ratio.
+    """
 
     mean: float
     smallest: float
@@ -79,9 +84,10 @@ def in_percent(share: float) -> str:
 @dataclass(frozen=True)
 class ModelRatioRow:
     """
-    Ratios of one demand between models, over the motions that every model completed.
+    Ratios of one demand of a structure between models, over the motions that every model completed.
 
-    They hold for one set of bearing properties (lower or upper bound).
+    bound: label of the structure, such as "lower bound" of the bearing properties. shown: the demand. motions: names of
+    these motions. ratios: ratio to the exact equations, by key of the model.
     """
 
     bound: str
@@ -90,9 +96,8 @@ class ModelRatioRow:
     motions: tuple[str, ...]
     value: float  # mean of the demand over these motions, exact equations, SI unit
     ratios: Mapping[str, ModelRatio] = field(default_factory=dict)
-    by_law: ModelRatio | None = (
-        None  # ratio of the demand by the translational engine to that by the equations with the engine's friction law
-    )
+    # Ratio of the demand by the translational engine to that by the equations with the engine's friction law
+    by_law: ModelRatio | None = None
     law: ModelRatio | None = None  # ratio of the equations with regularized friction to the exact equations
     # Ratio of the demand by the spatial engine to that by the translational one; for support forces, to that by statics
     turning: ModelRatio | None = None
@@ -156,24 +161,38 @@ def _make_model_ratio_row(
             return None
         (smallest, at_smallest), (largest, at_largest) = min(pairs), max(pairs)
         return ModelRatio(
-            math.fsum(each for each, _ in pairs) / len(pairs), smallest, largest, len(pairs), at_smallest, at_largest
+            mean=math.fsum(each for each, _ in pairs) / len(pairs),
+            smallest=smallest,
+            largest=largest,
+            motions=len(pairs),
+            smallest_motion=at_smallest,
+            largest_motion=at_largest,
         )
 
     ratios = {key: found for key in MODEL_TITLES if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
     supports = quantity.startswith("support_force")
     return ModelRatioRow(
-        bound, structure, shown, tuple(common),
-        math.fsum(exact[motion] for motion in common) / len(common), ratios,
-        ratio(TRANSLATIONAL.key, law), ratio(REGULARIZED.key, EXACT.key),
-        ratio(SPATIAL.key, EXACT.key if supports else TRANSLATIONAL.key),
-    )  # fmt: skip
+        bound=bound,
+        structure=structure,
+        shown=shown,
+        motions=tuple(common),
+        value=math.fsum(exact[motion] for motion in common) / len(common),
+        ratios=ratios,
+        by_law=ratio(TRANSLATIONAL.key, law),
+        law=ratio(REGULARIZED.key, EXACT.key),
+        turning=ratio(SPATIAL.key, EXACT.key if supports else TRANSLATIONAL.key),
+    )
 
 
 def _find_largest_deviation(
     ensemble: EnsembleResult, rows: Sequence[ModelRatioRow], pick: str
 ) -> tuple[float, str, str] | None:
-    """Return the largest relative difference by model ratio `pick` over rows, with its demand, structure and motion."""
+    """
+    Return the largest relative difference between two models over all rows, with its demand, and its motion; or None.
+
+    pick: which ratio of a row: the key of the small equations, or the name of a field.
+    """
     found = []
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
@@ -184,16 +203,17 @@ def _find_largest_deviation(
 
 
 def _word_largest_size(size: float) -> str:
-    """Return "up to" a relative difference in percent, or "less than 0.01 %" if rounding hides it."""
+    """Return "up to" and a relative difference in percent, or "less than 0.01 %" if rounding hides it."""
     return f"up to {percent(size)}" if size >= HIDDEN_BY_ROUNDING else f"less than {percent(HIDDEN_BY_ROUNDING)}"
 
 
 def model_ratio_sentence(ensemble: EnsembleResult) -> str:
     """
-    Word how demands differ by geometry, program (equations, Exudyn), friction law, rotation; "" without an engine.
+    Return a sentence on how demands differ between models; "" without an engine.
 
-    Each is the largest over all motions and demands of the table. The smallest support force has a clause of
-    its own: close to zero, a small force is a large share of it.
+    It states the largest difference over all motions and demands of the table that each of these makes: the geometry of
+    the sphere, the other program, the friction law and the rotation of bodies. The smallest support force has a clause
+    of its own, since of a force close to zero a small difference is a large share.
     """
     every = make_model_ratio_rows(ensemble)
     rows = [row for row in every if row.shown.quantity not in SMALLEST_IS_WORST]
@@ -220,10 +240,12 @@ def model_ratio_sentence(ensemble: EnsembleResult) -> str:
 
 def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow, ModelRatio, list[str]]]:
     """
-    Yield estimates of engine demands over all motions: the equations' demands times mean ratios of engine to equations.
+    Yield estimates of the engine's demands over all motions, from those that it computed.
 
-    Each comes with the ratio and the texts of mean, 84 % fractile and largest value times the mean ratio, with a range
-    from its spread; of a smallest force they are mean, 16 % fractile and smallest value.
+    An estimate is a statistic of the equations over all motions, times the mean ratio of the engine to the equations
+    over the engine's motions. It has the range that the smallest and the largest ratio give. Each item is the row of
+    ratios, the ratio used, and the texts of the unit and of three statistics: mean, 84 % fractile and largest value, or
+    for a smallest force mean, 16 % fractile and smallest value.
     """
     for row in make_model_ratio_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)
@@ -237,9 +259,9 @@ def extrapolate_ratios(ensemble: EnsembleResult) -> Iterator[tuple[ModelRatioRow
         for (name, place), (head, _) in zip(shown, EXTRAPOLATED_STATISTICS):
             value = told.numbers[place].value
             of = f"{name}: " if name != head else ""
-            # extrapolate only if the ratio is of several motions, since that of one has no spread
+            # Extrapolate only if the ratio is of several motions, since that of one has no spread.
             extended = value is not None and value > 0.0 and ratio.motions >= MIN_SPREAD_MOTIONS
-            # and only a computed displacement: one without an error is the limit of travel
+            # Extrapolate only a computed displacement: one without an error is the limit of travel.
             extended = extended and told.numbers[place].error is not None
             text = _word_extrapolated(ratio, value, factor) if extended and value is not None else "none"
             cells.append(of + add_mark(text, told.marks[place]))

@@ -1,1 +1,1 @@
-"""Scenes in which one value runs."""
+"""Families of scenes, which differ in the value of one key."""

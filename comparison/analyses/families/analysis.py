@@ -1,4 +1,8 @@
-"""A family of scenes in which one value varies: amplification by every model, and waterfall bars, over that value."""
+"""
+Results of a family of scenes over the value in which the scenes differ.
+
+They are the amplification by every model, its change from model to model (the bars of a waterfall), and the demands.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +30,7 @@ if TYPE_CHECKING:  # for annotations only; a study may lack these features
 
 @result
 class FamilyCurve:
-    """Amplification of a body by one model in every variant of a scene, along the key that varies; null if unknown."""
+    """Amplification of a body by one model, a number for each scene of a family in their order; null if unknown."""
 
     model: Annotated[str, "key of the model"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -39,7 +43,7 @@ class FamilyCurve:
 
 @result
 class FamilyStep:
-    """Change of a body's amplification from one model to the next (bar of a waterfall) in each scene of a family."""
+    """Change of a body's amplification from one model to the next, which is a waterfall's bar, by scene of a family."""
 
     model: Annotated[str, "key of the model that the step leads to, or total"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -54,27 +58,37 @@ def compute_family_curves(study: Study, surfaces: xr.Dataset, family: Family) ->
     curves = []
     for model in keys.values():
         for body in range(1, family.bodies + 1):
-            columns = zip(*(_numbers_of_body(surfaces, scene, model, body) for scene in family.scenes))
-            curves.append(FamilyCurve(model.key, body, *map(tuple, columns)))
+            rows = (_numbers_of_body(surfaces, scene, model, body) for scene in family.scenes)
+            mean, lowest, highest, error = zip(*rows)
+            curves.append(
+                FamilyCurve(model=model.key, body=body, mean=mean, lowest=lowest, highest=highest, error=error)
+            )
     return curves
 
 
 def list_family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
-    """Return for each body its change of amplification from each model to the next, by scene, then the total."""
+    """Return for each body its changes of amplification from model to model, then the total change."""
     steps = []
     for body in range(1, family.bodies + 1):
         bars = [_bars_by_effect(waterfalls[scene.name][body - 1]) for scene in family.scenes]
         keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
         for key in (*keys, TOTAL):
             column = [scene.get(key, WaterfallBar(key, NAN, NAN, resolved=False)) for scene in bars]
-            columns = zip(*((bar.size, bar.error, bar.resolved) for bar in column))
-            steps.append(FamilyStep(key, body, *map(tuple, columns)))
+            steps.append(
+                FamilyStep(
+                    model=key,
+                    body=body,
+                    size=tuple(bar.size for bar in column),
+                    error=tuple(bar.error for bar in column),
+                    resolved=tuple(bar.resolved for bar in column),
+                )
+            )
     return steps
 
 
 @result
 class FamilyDemand:
-    """A demand by one model in every variant of a scene (family): median, smallest, largest over motions or phases."""
+    """A demand by one model in each scene of a family: median, smallest and largest value over motions or phases."""
 
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
@@ -86,7 +100,7 @@ class FamilyDemand:
 
 
 def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:
-    """Return demands of stored motions by variant of a scene (family), one for each model, quantity and body."""
+    """Return the demands of a family's stored motions, one for each model, quantity and body."""
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
@@ -105,7 +119,7 @@ def list_family_demands(family: Family, motions: Sequence[StoredMotion]) -> list
 def list_family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """Return demand statistics over all phases by variant of a scene, one for each model, quantity and body."""
+    """Return the demands of a family over all phases, one for each model, quantity and body."""
     found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
     for scene in family.scenes:
         for row in statistics.get(scene.name, ()):
@@ -118,18 +132,31 @@ def list_family_demands_over_phases(
 def _make_family_demand(
     family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
 ) -> FamilyDemand:
-    """Return a demand in each variant of a scene. key: model, quantity, body. rows: median, lowest, highest, count."""
-    numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
-    return FamilyDemand(*key, *map(tuple, zip(*numbers)))
+    """
+    Return a demand in each scene of a family.
+
+    key: model, quantity and body. rows: by name of the scene, the median, lowest and highest value and their count.
+    """
+    model, quantity, body = key
+    median, lowest, highest, motions = zip(*(rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes))
+    return FamilyDemand(
+        model=model,
+        quantity=quantity,
+        body=body,
+        median=median,
+        lowest=lowest,
+        highest=highest,
+        motions=motions,
+    )
 
 
 def _bars_by_effect(waterfall: Waterfall) -> dict[str, WaterfallBar]:
-    """Return a waterfall's bars (changes from model to model) by the key of the later model, and the total by TOTAL."""
+    """Return the bars of a waterfall, its changes from model to model, by the key of the later model or TOTAL."""
     return {**{bar.model: bar for bar in waterfall.bars}, TOTAL: waterfall.total}
 
 
 def _numbers_of_body(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
-    """Return a body's mean, smallest and largest amplification over the phases, and mean error; NaN if unknown."""
+    """Return the mean, smallest and largest amplification of a body over the phases, and its mean error; or NaN."""
     mu = usable_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():

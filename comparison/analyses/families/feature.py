@@ -71,15 +71,19 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
 
 # Field of summary.json with the results of families: scenes of one file that differ in the value of one key
 FOUND = ResultField(
-    "families",
-    list[FamilyResult],
-    "families of scenes in which one value runs; null without any",
+    name="families",
+    kind=list[FamilyResult],
+    meaning="families of scenes in which one value runs; null without any",
     compute=family_results,
 )
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:
-    """Return per family plots over the varied key: each body's amplification by model and its change between models."""
+    """
+    Return for each family its title, its results and plots over the key that varies.
+
+    The plots show each body's amplification by every model, its change from model to model, and the demands.
+    """
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
     for family in FOUND.get(results) or ():
@@ -92,7 +96,7 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
 
 
 def _value_axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
-    """Return the positions of a family's values on the plot's axis, and the axis; its ticks are words if needed."""
+    """Return the positions of a family's values on the axis of a plot, and the axis; values may be words."""
     if any(isinstance(value, str) for value in family.values):
         places = [float(number) for number in range(len(family.values))]
         names = [[place, str(value)] for place, value in zip(places, family.values)]
@@ -108,8 +112,10 @@ def _panel_over_values(
     family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]
 ) -> Panel:
     """
-    Return a plot over the varied key. lines: name, color, values; optionally their smallest and largest values.
-    These make a band for the first and the last model alone, since the bands of all models hide each other.
+    Return a plot over the varied key of a family.
+
+    lines: for each line its name, color and values, and optionally the smallest and largest values. These are drawn as
+    a band of the first and the last line alone, since the bands of all lines hide each other.
     """
     places, axis = _value_axis(family)
     series = []
@@ -157,12 +163,12 @@ def _family_demand_panel(
 
 # Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
-    "families",
-    (FOUND,),
+    key="families",
+    fields=(FOUND,),
     section=Section(
-        "Families of scenes",
-        "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
-        lambda report: {"family_panels": family_panels(report.results)},
+        title="Families of scenes",
+        absent="a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
+        context=lambda report: {"family_panels": family_panels(report.results)},
         folded=False,
     ),
 )

@@ -1,8 +1,9 @@
 """
-Peaks that experiments measured, compared with every model at the phases of the test, with both errors.
+Peaks that experiments measured, compared with the values that every model computes at the phases of the test.
 
-A measured peak is met where |D| <= u + e: D is the computed less the measured value, u the uncertainty of the
-measurement, e the error of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
+A measured peak is met where |D| <= u + e. D is the computed less the measured value, u the uncertainty of the
+measurement, and e the error of the computation. The uncertainty of the input (motion, masses, stiffness, friction) is
+in neither u nor e.
 """
 
 import math
@@ -39,7 +40,7 @@ NO_SUCH_VALUE = Estimate(math.nan, math.nan, "the model has no such value")  # f
 MeasuredQuantityKey = tuple[str, int]  # key of a measured quantity: its name, and number of the body (0: isolator)
 # Arguments of a task: scene, model, relative error to aim at, phase pair in rad, and the measured quantities to compute
 Arguments = tuple[Scene, Model, float, tuple[float, float], list[MeasuredQuantityKey]]
-# computed peak: value and error (NaN if not computed), and the outcome of the motion or why there is no value
+# Computed peak: value and error (NaN if not computed), and the outcome of the motion or why there is no value
 PeakAnswer = tuple[float, float, str]
 
 
@@ -86,7 +87,7 @@ def unit_of_peak(peak: MeasuredPeak) -> str:
 
 
 def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return a line on measured peaks: number of each verdict, and the largest relative difference not met."""
+    """Return a line on measured peaks: how many have each verdict, and the largest relative difference not met."""
     pairs = [(peak, computed) for peak in peaks for computed in peak.computed]
     off = []
     for peak, each in pairs:
@@ -102,7 +103,11 @@ def phases_of_peak(peak: Measured) -> tuple[float, float]:
 
 
 def _list_questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[MeasuredQuantityKey]:
-    """Return measured quantities that a model computes at a phase pair: only amplification if slow slip is left out."""
+    """
+    Return the quantities measured at a phase pair that a model is to compute.
+
+    A model with a cutoff speed differs from another in the amplification alone, so that it computes only this.
+    """
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()
@@ -128,7 +133,7 @@ def compute_peaks_at_phases(task: Arguments) -> list[PeakAnswer]:
 
 
 def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return a clause: number of measured peaks compared with models, and of each verdict; "" without any."""
+    """Return a clause that counts the measured peaks compared with models, and each verdict; "" without any peak."""
     if not peaks:
         return ""
     counts = count_verdicts(computed.verdict for peak in peaks for computed in peak.computed)
@@ -166,7 +171,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
 def _compare_peak(
     scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[MeasuredQuantityKey, PeakAnswer]]]
 ) -> MeasuredPeak:
-    """Return a measured peak with its values by the models. models: key, and computed peaks by quantity and body."""
+    """Return a measured peak with its values by the models. models: key, and the peaks that the model computed."""
     computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
         if asked in known:
@@ -174,6 +179,18 @@ def _compare_peak(
             difference = value - peak.value
             verdict = judge_error(difference, peak.uncertainty + error)
             exceeds = None if verdict == NOT_COMPARED else verdict == NOT_MET
-            computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
-    phases = (math.nan, math.nan) if peak.phases is None else phases_of_peak(peak)
-    return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)
+            computed.append(
+                ComputedPeak(
+                    model=model, value=value, error=error, difference=difference, exceeds=exceeds, status=status
+                )
+            )
+    return MeasuredPeak(
+        scene=scene.name,
+        quantity=peak.quantity,
+        body=peak.body or 0,
+        phases=(math.nan, math.nan) if peak.phases is None else phases_of_peak(peak),
+        value=peak.value,
+        uncertainty=peak.uncertainty,
+        source=peak.source or "",
+        computed=computed,
+    )

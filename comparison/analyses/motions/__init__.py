@@ -1,1 +1,1 @@
-"""Motions at chosen phase pairs."""
+"""Motions at a few chosen phase pairs, stored for the report."""

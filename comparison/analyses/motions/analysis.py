@@ -1,4 +1,4 @@
-"""Motions stored for the report: a few phase pairs of every scene by the models that the report compares, decimated."""
+"""Motions stored for the report: a few phase pairs of every scene, decimated, by the models that are compared."""
 
 from dataclasses import dataclass, field, replace
 
@@ -22,12 +22,17 @@ from reference.support.build_cache import cache_on_disk
 # Decimation keeps few instants of a stored motion: largest error of lines between them, as a share of `half_range`
 MAX_DECIMATION_ERROR = 0.003
 MIN_RANGE_SHARE = 0.01  # smallest half range used for a component, as a share of the component's largest value
-# Number of phase pairs (k, 2k) 2 pi/5 with stored motions: even over the square of phases, no two mirror images
+# Number of the phase pairs (k, 2k) 2 pi/5 with k = 0, ..., 4, whose motions are stored. They are spread evenly over the
+# square of all phases, and no two of them are mirror images.
 EVENLY_SPREAD_PAIRS = 5
 
 
 def half_range(values: Array) -> Array:
-    """Return half the range (C,) of each component of `values` (T, C), to which decimation errors are relative."""
+    """
+    Return half the range of each component over time, to which the errors of decimation are relative.
+
+    values: (T, C), T instants of C components. The result is (C,), and 1 for a component that is zero throughout.
+    """
     largest = np.abs(values).max(axis=0, initial=0.0)
     half = 0.5 * (values.max(axis=0, initial=-np.inf) - values.min(axis=0, initial=np.inf))
     scale: Array = np.maximum(half, MIN_RANGE_SHARE * largest)
@@ -36,10 +41,11 @@ def half_range(values: Array) -> Array:
 
 def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
-    Return the indices of the instants that a decimated motion keeps. values: (T, C) at `time` (T,).
+    Return the indices of the instants that a decimated motion keeps.
 
-    They are both ends, `peaks`, and as many more as it takes for straight lines between them to miss no value by more
-    than MAX_DECIMATION_ERROR of `half_range` of its component.
+    values: (T, C), the components at `time` (T,). peaks: indices to keep in any case. Kept are both ends, the peaks,
+    and as many more as it takes for straight lines between them to miss no value by more than MAX_DECIMATION_ERROR of
+    the `half_range` of its component.
     """
     if len(time) < 3:
         return np.arange(len(time))
@@ -54,6 +60,8 @@ def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.
 @cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
     """Mark more instants in `kept` (T,) until straight lines between them miss no value (T, C) by more than `share`."""
+    # Douglas and Peucker: of the instants between two kept ones, keep the one that misses the line between these most;
+    # then look at the first part again. Go on to the next interval when none misses it by more than `share`.
     start = 0
     while start < len(time) - 1:
         end = start + 1
@@ -75,7 +83,11 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
 
 @dataclass(frozen=True)
 class MotionPlace:
-    """Phase pair whose motion is stored: row and column in the grid of phases; why chosen ("" if evenly spread)."""
+    """
+    Phase pair of a scene whose motion is stored.
+
+    row, column: indices of alpha1 and alpha2 in the grid of phases. why: why it was chosen, "" if of the even spread.
+    """
 
     scene: str
     row: int
@@ -140,11 +152,14 @@ Arguments = tuple[Scene, Model, float, MotionPlace, tuple[float, float]]
 
 def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[MotionPlace, set[str]]:
     """
-    Choose phase pairs whose motions are stored (largest model differences, even spread) and engine models for each.
+    Return the phase pairs of a scene whose motions are stored, each with the engine models that move there.
+
+    They are those where the amplification of two models differs most, and a few that are spread evenly over the phases.
+    Under a recorded motion, which has no phases, there is one.
     """
     engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
-        return {MotionPlace(scene.name, 0, 0, ""): engines}
+        return {MotionPlace(scene=scene.name, row=0, column=0, why=""): engines}
     places: dict[tuple[int, int], tuple[str, set[str]]] = {}
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
@@ -183,16 +198,26 @@ def compute_stored_motion(task: Arguments) -> StoredMotion:
 def _store_motion(place: MotionPlace, model: Model, motion: Trajectory) -> StoredMotion:
     """Return a motion decimated, with its demands and floor spectra. Raises ValueError if a number is not finite."""
     whole = StoredMotion(
-        place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
-        tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
-        contact_force=motion.contact_force, isolator_force=motion.isolator_force,
-        support_force=motion.support_force, yaw=motion.extra.get("yaw", _empty_series()),
-        demands=demands(motion), spectra=floor_spectra(motion) if motion.status in FULL_LENGTH_OUTCOMES else None,
-    )  # fmt: skip
+        place=place,
+        model=model.key,
+        time=motion.time,
+        position=motion.position[:, :, :2],
+        acceleration=motion.absolute_acceleration[:, :, :2],
+        stick=tuple((float(start), float(end)) for start, end in motion.stick),
+        status=str(motion.status),
+        contact_force=motion.contact_force,
+        isolator_force=motion.isolator_force,
+        support_force=motion.support_force,
+        yaw=motion.extra.get("yaw", _empty_series()),
+        demands=demands(motion),
+        spectra=floor_spectra(motion) if motion.status in FULL_LENGTH_OUTCOMES else None,
+    )
     values = np.hstack([block for name, block in whole.series_by_name().items() if name != "time"])
     size = np.linalg.norm(motion.absolute_acceleration, axis=2)
     if not (np.isfinite(size).all() and np.isfinite(values).all()):
         raise ValueError("the motion holds numbers that are not finite")
+    # Keep the instants of all peaks: of the size of accelerations, of every component, of displacement and force as
+    # vectors.
     extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
     extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
     kept = decimate(whole.time, values, np.unique(np.concatenate(extremes)))
@@ -204,7 +229,13 @@ def _motion_without_values(place: MotionPlace, model: str, outcome: Outcome, err
     """Return a stored motion of zero length, with the outcome and message that say why it is empty."""
     empty = np.zeros((0, 0, 2))
     return StoredMotion(
-        place, model, np.zeros(0), empty, empty.copy(), status=outcome.value, error_message=error_message
+        place=place,
+        model=model,
+        time=np.zeros(0),
+        position=empty,
+        acceleration=empty.copy(),
+        status=outcome.value,
+        error_message=error_message,
     )
 
 
@@ -214,7 +245,7 @@ def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
 
 
 class Motions(MappedAnalysis[list[StoredMotion]]):
-    """Analysis that stores motions for the report: where models' amplification differs most, and evenly spread ones."""
+    """Analysis that stores motions for the report, at the phase pairs of `choose_places`."""
 
     key, stage, needs_surfaces = "motions", "motions", True
     seconds = 4.0

@@ -50,13 +50,17 @@ class _StoredMotionDemandsSchema(Part):
 
 
 def _type_of_demand(annotation: str) -> Any:
-    """Return the type, for the JSON schema, of a field of `Demands`: a number or one by body, or null if allowed."""
+    """
+    Return the type that a field of `Demands` has in the JSON schema.
+
+    It is a number with its error, or a list of these by body; null is allowed where the field may be None.
+    """
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
 
 def _meaning_of_demand(name: str) -> Any:
-    """Return the description of a demand for the JSON schema: meaning, SI unit and bodies that have it."""
+    """Return the description of a demand in the JSON schema: its meaning, its SI unit and the bodies that have it."""
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
@@ -108,14 +112,14 @@ def _round_spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
 
 
 DEMANDS = SceneField(  # field of summary.json on each scene: demands of its stored motions
-    "demands",
-    list[MotionDemands],
-    "one per stored phase pair and model; empty without stored motions",
-    _demands_of_motions,
+    name="demands",
+    kind=list[MotionDemands],
+    meaning="one per stored phase pair and model; empty without stored motions",
+    compute=_demands_of_motions,
 )
 # Registration of this analysis with the program: field of each scene, computation, and data for the page's script
 FEATURE = Feature(
-    Motions.key,
+    key=Motions.key,
     scene_fields=(DEMANDS,),
     analysis=Motions(),
     needs="surfaces",  # the page shows motions below the plots of amplification over the phases, only with these

@@ -47,7 +47,8 @@ from comparison.report.section import Report
 from reference.measures import Demands
 from reference.problem import Scene
 
-MotionOffsets = dict[tuple[MotionPlace, str], int]  # motion's phase-grid place, model: index of its first packed number
+# Index of the first packed number of each motion, by its place in the grid of phases and the key of its model
+MotionOffsets = dict[tuple[MotionPlace, str], int]
 
 MAX_COLUMN_ROUNDING = 7e-4  # largest rounding error of a packed time history, as a share of half its range
 SPECTRUM_DIGITS = 4  # significant digits of a floor spectrum on the page: more are invisible
@@ -112,10 +113,11 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Return for the page support places, and how far contacts on the spheres move back per platform displacement.
+    Return what the page needs to draw the paths of the contact points on the spheres.
 
-    lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
-    from the center of mass of the platform at rest, m, null where the scene does not state them.
+    lever: displacement of a contact point on its sphere per displacement of the platform, which is the radius of the
+    spheres over rho; null where the scene does not state it or is flat. supports: [x, y] of each support from the
+    center of mass of the platform at rest, m; null where the scene does not state them.
     """
     sphere, supports = scene.isolator.sphere_radius, scene.support_places
     return {
@@ -128,7 +130,7 @@ def _rounding_exponents(motion: StoredMotion) -> NDArray[np.int_]:
     """Return for each time history of a motion the exponent n of the unit 2^n to which it is rounded."""
     values = _motion_columns(motion)
     steps = MAX_COLUMN_ROUNDING * half_range(values)
-    steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
+    steps[:1] = MAX_TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)  # the first column is the time
     return np.floor(np.log2(steps)).astype(int)
 
 
@@ -139,7 +141,12 @@ def _motion_columns(motion: StoredMotion) -> NDArray[np.float64]:
 
 
 def _encode_motion(motion: StoredMotion) -> bytes:
-    """Return a motion's time histories as bytes: 32-bit multiples of their units, first value, then differences."""
+    """
+    Return the time histories of a motion as bytes, one after the other.
+
+    Each is a series of 32-bit integer multiples of its unit: the first value, then the differences of successive
+    values.
+    """
     values = np.round(_motion_columns(motion) / 2.0 ** _rounding_exponents(motion))
     return np.diff(values, axis=0, prepend=np.zeros((min(len(values), 1), values.shape[1]))).T.astype("<i4").tobytes()
 
@@ -151,7 +158,7 @@ def find_motion_offsets(motions: Sequence[StoredMotion]) -> MotionOffsets:
 
 
 def _list_column_ranges(motion: StoredMotion) -> dict[str, list[int]]:
-    """Return for every time history of the motion, by name, its first column and its number of columns when packed."""
+    """Return by name of each time history its first column among all of the motion, and its number of columns."""
     widths = {name: block.shape[1] for name, block in motion.series_by_name().items()}
     return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}
 

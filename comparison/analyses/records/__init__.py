@@ -1,1 +1,1 @@
-"""Recorded motions as they were read: size, peaks, zero line, and what is hardly meant."""
+"""Recorded ground motions as they were read: length, peaks, zero line, and warnings of implausible values."""

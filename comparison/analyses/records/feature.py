@@ -46,7 +46,13 @@ def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> 
 def _recorded_motion(record: RecordDescription) -> RecordedMotion:
     """Return what was read of a ground motion record, in the form in which summary.json holds it."""
     directions = tuple(
-        RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
+        RecordedDirection(
+            axis=one.axis,
+            peak=one.peak,
+            mean_over_peak=one.mean_over_peak,
+            final_velocity=one.final_velocity,
+            final_displacement=one.final_displacement,
+        )
         for one in record.directions
     )
     return RecordedMotion(**{**vars(record), "directions": directions})
@@ -60,15 +66,18 @@ def word_warnings(records: Sequence[RecordedMotion]) -> str:
 
 
 FOUND = ResultField(  # field of summary.json with the recorded ground motions as read
-    "records", list[RecordedMotion], "recorded motions as read; null without any", compute=list_recorded_motions
+    name="records",
+    kind=list[RecordedMotion],
+    meaning="recorded motions as read; null without any",
+    compute=list_recorded_motions,
 )
 # Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
-    "records",
-    (FOUND,),
+    key="records",
+    fields=(FOUND,),
     section=Section(
-        "Records as read",
-        "phase-resonance run makes it, of scenes with a recorded motion",
+        title="Records as read",
+        absent="phase-resonance run makes it, of scenes with a recorded motion",
         context=lambda report: {"gravity": GRAVITY},
         verdict=lambda results: word_warnings(FOUND.read_from(results)),
     ),

@@ -1,1 +1,1 @@
-"""Largest values over all phases."""
+"""Search for the largest amplifications and displacements over all phases."""

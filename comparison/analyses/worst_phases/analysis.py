@@ -1,12 +1,12 @@
 """
 Search for the phases where amplification and displacement are largest in every scene; the engine's values there.
 
-The search of `reference.worst_phases` is made for the small equations in both readings of (5.1), and for the equations
-that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own
-maximum nearby is known, too: its ratio to the equations, which hardly changes there, says where that is. The most
-complete engine model, whose surface is not smooth, is computed at the worst phases, and its largest value there or on
-its grid is listed. The searches begin at the local maxima of the surfaces, if these are as fine as the search's own
-grid.
+`reference.worst_phases` searches by the small equations in both readings of (5.1), that is with accelerations at any
+slip speed and only at resolved ones, and by the equations that the engine solves, too. Around the worst phases of the
+latter the engine's own maximum is searched in a small square: its ratio to the equations, which hardly changes there,
+says where that is. The most complete engine model, whose surface is not smooth, is not searched. It is computed at the
+worst phases of the equations, and its largest value there or on its grid is listed. The searches begin at the local
+maxima of the surfaces, if these are as fine as the search's own grid.
 """
 
 import math
@@ -67,12 +67,18 @@ class LargestOverPhases:
 
 # Engine model whose amplification is not searched for its maximum, with its largest amplification on the phase grid
 UnsearchedEngine = tuple[Model, GridMaximum]
-# Task: scene, equations, engine to search, engine not searched, quantity, body, engine tolerance, start phases, rad
+# Arguments of a task: the scene; the model of equations to search by; the engine model of the same equations; the
+# engine model that is not searched; the quantity; the body; the relative error asked of the engine; the phases at which
+# to start, (K, 2) in rad, or None for those of a grid
 SearchTaskArguments = tuple[Scene, Model, Model | None, UnsearchedEngine | None, Quantity, int, float, Array | None]
 
 
 def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """Return a body's largest amplification over phases by a model, else by the nearest later or, last, earlier one."""
+    """
+    Return the largest amplification of a body over the phases by a model.
+
+    If the model was not searched, it is that of the next model after it in `models` that was, else of the last before.
+    """
     searched = {
         worst.model: worst
         for worst in found
@@ -84,7 +90,11 @@ def find_nearest_search(found: Sequence[Any], models: Sequence[str], scene: str,
 
 
 def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Return the searches to make: model of equations, engine model of the same equations or None, quantity, body."""
+    """
+    Return the searches to make in a scene.
+
+    Each is a model of equations, the engine model of the same equations or None, the quantity and the body.
+    """
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SMALL.amplification]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -98,7 +108,11 @@ def _list_searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None
 def _starting_phases(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
-    """Return phases, rad, (K, 2), of local maxima on the study's grid; None if it is coarser than the search's own."""
+    """
+    Return the phases (K, 2), rad, of the local maxima of a surface, for the search to start at.
+
+    None if there are none, or if the study's grid is coarser than the search's own.
+    """
     if surfaces is None or len(study.phase_indices(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
@@ -110,14 +124,19 @@ def _starting_phases(
 
 
 def search_worst_phases(task: SearchTaskArguments) -> list[LargestOverPhases]:
-    """In a worker, search the largest value by the equations over all phases, then the engine's largest near it."""
+    """
+    Search the largest value over all phases, in a worker process.
+
+    The list has the largest value by the equations, then the largest near it of the engine model of the same equations,
+    then the larger of the value there and the largest on the grid of the engine model that is not searched.
+    """
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     try:
         maximum = reference.worst_phases(scene, body, quantity, tolerance=SEARCH_TOLERANCE, starts=starts, **settings)
     except NoAnswerError as error:
         return _state_reason(task, error.reason)
-    # Without definition of the peak and friction law: the model's key tells both
+    # `reading` and `law`, which peaks count and how friction slides, are left out: the key of the model tells both.
     stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}
     worst = LargestOverPhases(scene.name, model.key, quantity, body, **stated)
     found = [worst]
@@ -162,7 +181,13 @@ def _compute_engine_nearby(
     """Return the engine's amplification at the equations' worst phases, and its largest in a square around them."""
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))
-    search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    search = LocalSearch(
+        phases=start.phases[0],
+        value=float(start.value[0]),
+        error=float(start.error[0]),
+        half_width=ENGINE_HALF_WIDTH,
+    )
+    # The engine is costly: it is computed at the center and corners of the square and at the highest point predicted.
     (corners, _), (square, _) = make_square_nodes(2), make_square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface_of_model(scene, like, SEARCH_TOLERANCE, worst.body).compute(
@@ -175,11 +200,20 @@ def _compute_engine_nearby(
         return LargestOverPhases(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (search.phases % (2.0 * np.pi)).tolist()
     return LargestOverPhases(
-        scene.name, model.key, worst.quantity, worst.body, search.value, search.error, (alpha1, alpha2), "nearby",
-        climbs=1, reached=1, evaluations=engine.evaluations,
+        scene=scene.name,
+        model=model.key,
+        quantity=worst.quantity,
+        body=worst.body,
+        value=search.value,
+        error=search.error,
+        phases=(alpha1, alpha2),
+        kind="nearby",
+        climbs=1,
+        reached=1,
+        evaluations=engine.evaluations,
         at_start=float(start.numerator[0] / start.denominator[0]),
         start_error=float(start.error[0]),
-    )  # fmt: skip
+    )
 
 
 def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> UnsearchedEngine | None:
@@ -194,16 +228,25 @@ def _largest_on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, bo
 def _larger_of_grid_and_worst(
     worst: LargestOverPhases, scene: Scene, on_grid: UnsearchedEngine, tolerance: float
 ) -> LargestOverPhases:
-    """Return the larger of two amplifications by the engine: largest on its grid; at the equations' worst phases."""
+    """Return the larger of two amplifications by the engine: at the worst phases of the equations, or on its grid."""
     model, largest = on_grid
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
-    about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
-    name = worst.scene, model.key, worst.quantity, worst.body
-    if start > largest.mu:
-        return LargestOverPhases(*name, start, start_error, worst.phases, "nearby", **about)  # type: ignore[arg-type]
-    return LargestOverPhases(*name, largest.mu, largest.error, largest.phases, "grid", **about)  # type: ignore[arg-type]
+    beside = start > largest.mu  # whether the largest is at the worst phases of the equations
+    return LargestOverPhases(
+        scene=worst.scene,
+        model=model.key,
+        quantity=worst.quantity,
+        body=worst.body,
+        value=start if beside else largest.mu,
+        error=start_error if beside else largest.error,
+        phases=worst.phases if beside else largest.phases,
+        kind="nearby" if beside else "grid",
+        at_start=start,
+        start_error=start_error,
+        evaluations=engine.evaluations,
+    )
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
@@ -214,7 +257,12 @@ def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -
 def _estimate_engine_by_ratio(
     center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
 ) -> ComputedPhases:
-    """Estimate the engine's amplification at 3 x 3 phase pairs: that of the equations times a ratio known at five."""
+    """
+    Return an estimate of the engine's amplification at 3 x 3 phase pairs of a square.
+
+    It is that of the equations times the ratio of the engine to the equations. The ratio is known at the center and the
+    corners; in the middle of a side it is the mean of two corners.
+    """
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]

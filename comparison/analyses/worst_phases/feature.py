@@ -16,7 +16,7 @@ from reference.problem.readings import BOTH_READINGS
 
 
 def _word_kind(worst: LargestOverPhases) -> str:
-    """Return in words where the largest value over phases lies (smooth maximum, edge, jump, grid), or why unknown."""
+    """Return in words where the largest value over phases is, such as "on a smooth maximum", or why it is unknown."""
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
@@ -33,14 +33,23 @@ def _word_kind(worst: LargestOverPhases) -> str:
 
 
 def _distribution_curves(scene: SceneResult, body: int) -> list[tuple[str, tuple[float, ...]]]:
-    """Return distributions of a body's amplification over phases: small-vibration equations, most complete model."""
+    """
+    Return the distributions of a body's amplification over the phases, each with the key of its model.
+
+    They are by the small-vibration equations, in both readings, and by the most complete model.
+    """
     (last,) = (line.second for line in scene.headlines if line.body == body)
     kept = (SMALL.key, SMALL_AS_INTEGRATED.key, last)
     return [(each.model, each.curve) for each in scene.distributions if each.body == body and each.model in kept]
 
 
 def _name_reading(report: Report, worst: LargestOverPhases) -> str:
-    """Name the peak: any slip speed ("literal supremum"), resolved ("as integrated"), both; "" for a displacement."""
+    """
+    Return the name of the peaks that count in a largest amplification; "" for a displacement.
+
+    They are peaks at any slip speed ("literal supremum"), at resolved ones ("as integrated"), or both without dry
+    friction.
+    """
     if worst.quantity == "displacement":
         return ""
     (scene,) = (scene for scene in report.study.scenes if scene.name == worst.scene)
@@ -49,16 +58,18 @@ def _name_reading(report: Report, worst: LargestOverPhases) -> str:
 
 
 FOUND = ResultField(  # field of summary.json with the result of this analysis
-    WorstPhases.key, list[LargestOverPhases], "the largest values over all phases; null if not computed"
+    name=WorstPhases.key,
+    kind=list[LargestOverPhases],
+    meaning="the largest values over all phases; null if not computed",
 )
 
 
 def _list_marks(report: Report, scene: Scene) -> Mapping[str, Any]:
     """
-    Return the largest amplification of every model and body, which the page marks on its surface.
+    Return the marks of the largest amplifications on the surfaces of the page, by model a list of one for each body.
 
-    Each is alpha1, alpha2 (rad), the amplification, and the model that was searched: this one or one near it. None
-    where none was.
+    A mark is [alpha1, alpha2, amplification, key of the model that was searched], with phases in rad. That is this
+    model or one near it; the mark is None where neither was searched.
     """
     keys = [each.key for each in models_of(scene, report.study.hierarchy)]
     searched, bodies = report.found.get(WorstPhases.key) or (), range(1, len(scene.bodies) + 1)
@@ -97,14 +108,14 @@ def _section_context(report: Report) -> Mapping[str, Any]:
 
 # Registration of this analysis with the program: field of summary.json, computation, marks, section of the report
 FEATURE = Feature(
-    WorstPhases.key,
-    (FOUND,),
+    key=WorstPhases.key,
+    fields=(FOUND,),
     analysis=WorstPhases(),
     page_data=_list_marks,
     section=Section(
-        "Largest values over all phases",
-        "phase-resonance run makes it, of scenes with phases",
-        _section_context,
+        title="Largest values over all phases",
+        absent="phase-resonance run makes it, of scenes with phases",
+        context=_section_context,
         folded=False,
     ),
 )

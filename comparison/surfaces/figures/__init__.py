@@ -1,1 +1,1 @@
-"""The figures of the report, and those that the commands write."""
+"""Pictures of surfaces, for the report and for manuscripts."""

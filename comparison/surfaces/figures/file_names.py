@@ -6,7 +6,11 @@ MAX_NAME_BYTES = 200  # bytes of a name without its ending: file systems allow 2
 
 
 def name_figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
-    """Return a figure's file name, scene and parts joined by hyphens; a long one is cut and ends in hash and parts."""
+    """
+    Return the file name of a figure: the scene and the parts, joined by hyphens.
+
+    The scene is cut where the name would be too long, and a hash of the whole name follows it.
+    """
     stem = "-".join([scene, *parts])
     written = stem.encode(errors="surrogateescape")
     if len(written) > MAX_NAME_BYTES:

@@ -22,14 +22,14 @@ from reference.support.drawing import escape_for_matplotlib
 HEIGHT_COLORS = "cividis"  # color map that reads alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"  # color map of differences: blue below zero, red above
 PHASE_RANGE = (0.0, 2.0 * np.pi)  # rad, range of the axes of both phases
-# ticks of the axes of phases, rad, and their labels
+# Ticks of the axes of phases, rad, and their labels
 QUARTER_TICKS = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
 # Settings of PNG files: for dense surfaces level 3 makes smaller files than the usual level 6, in 0.6 of the time.
 PNG_SETTINGS = {"compress_level": 3}
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
-    """Write a PNG file: a body's surfaces by two models on one height scale, and a map of their relative difference."""
+    """Write a PNG file with a body's surfaces by two models, on one scale of heights, and a map of their difference."""
     both = [extend_surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
@@ -81,7 +81,11 @@ def extend_surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, b
 def draw_in_space(
     axes: Axes3D, phase: Array, height: Array, limits: tuple[float, float], aspect: float, zoom: float, **style: Any
 ) -> None:
-    """Draw a surface over the phases in perspective; aspect: ratio of the height to either side."""
+    """
+    Draw a surface over the phases in perspective.
+
+    limits: ends of the axis of heights. aspect: ratio of the height of the box to either side. zoom: size in the axes.
+    """
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **style)
     axes.set_zlim(*limits)

@@ -28,7 +28,7 @@ PRINT_RESOLUTION = 300  # dots per inch of the PNG file
 
 def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
     """
-    Write a figure of a scene's surfaces in the style of the paper to `path`, PNG, and as PDF beside it.
+    Write a figure of a scene's surfaces in the style of the paper, as a PNG file at `path` and a PDF file beside it.
 
     It shows for every body the surface of the paper's equations and that of the engine under the paper's assumption
     that no body turns, on one height scale per body.
@@ -54,7 +54,11 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
 
 
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
-    """Draw one gray surface in the manner of the paper; phase: rad, 0 to 2 pi; name: label of the vertical axis."""
+    """
+    Draw one gray surface in the manner of the paper.
+
+    phase: rad, from 0 to 2 pi. limits: ends of the vertical axis. name: label of the vertical axis.
+    """
     assert isinstance(axes, Axes3D)
     lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False}
     draw_in_space(axes, phase, height, limits, 0.66, 1.02, **lines)

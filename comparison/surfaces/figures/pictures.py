@@ -1,4 +1,4 @@
-"""Pictures of a study's surfaces as tasks, whose results are files."""
+"""Analysis that draws the pictures of a study's surfaces: each is a task whose result is its files."""
 
 import tempfile
 from dataclasses import replace
@@ -20,7 +20,8 @@ DRAWN_VARIABLES = ["mu", "error", "stride", "recorded"]  # variables of surfaces
 
 
 NamedFiles = tuple[tuple[str, bytes], ...]  # names and contents of files
-# Arguments of a task that draws a picture: kind ("total", "paper"), study, surfaces of one scene, body, pair of models
+# Arguments of a task that draws a picture: kind ("total" or "paper"), study of one scene, surfaces of this scene, body
+# and pair of models (0 and None for "paper", which shows all bodies)
 PictureArguments = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
@@ -61,7 +62,7 @@ class Pictures(Analysis[dict[str, bytes]]):
 
 
 def draw_picture(picture: PictureArguments) -> NamedFiles:
-    """Draw one picture; return names and contents of its files. Runs inside a worker process."""
+    """Draw one picture and return the names and contents of its files. Runs inside a worker process."""
     from comparison.surfaces.figures import pairs, paper  # Plotting libraries are loaded only where a picture is drawn.
 
     kind, study, surfaces, body, pair = picture
