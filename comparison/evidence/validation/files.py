@@ -139,7 +139,7 @@ def _read_swing(
     angle = _check_series(file, second, angles, len(time), "rad")
     if np.ptp(angle) == 0.0:
         raise make_file_error(file, f"{second} must move: every sample is the same")
-    return FreeSwing(time, angle - np.pi)
+    return FreeSwing(time, angle - np.pi)  # The published angles are pi at the lowest position.
 
 
 def select_decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
