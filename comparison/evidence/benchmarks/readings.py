@@ -26,6 +26,8 @@ def interpolate_positions(motion: Trajectory, times: ArrayLike) -> Array:
 
 def find_turning_points(motion: Trajectory) -> Array:
     """Return the positions, m, at which the platform's velocity along x changes sign, and the end of its last swing."""
+    # A swing is a run of samples that move to one side, apart from creep. The turning point is sought between its last
+    # sample and the first of the next swing.
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > CREEP_SPEED_SHARE * np.abs(speed).max())
     sign = np.sign(speed[moving])

@@ -26,10 +26,10 @@ MIN_SHARE, MAX_SHARE = 0.2, 0.4
 
 @dataclass(frozen=True)
 class PeakBasins:
-    """Peaks of a surface (row, column), highest first; for each grid point, index of the peak that ascent reaches."""
+    """Peaks of a surface on a grid, and the basin of each: the points from which ascent leads to it."""
 
-    tops: Sequence[tuple[int, int]]
-    regions: NDArray[np.int_]
+    tops: Sequence[tuple[int, int]]  # row and column of each peak, the highest first
+    regions: NDArray[np.int_]  # for every grid point, index in `tops` of the peak that ascent reaches
 
 
 class PeakCounts(NamedTuple):
@@ -71,7 +71,15 @@ def _count_bounded(mu: Array, error: float, share: float) -> PeakCounts:
 
 
 def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> PeakBasins:
-    """Return the peaks of a surface mu (n, m), none if it varies by at most twice `error`; closed: it is periodic."""
+    """
+    Return the peaks of a surface mu (n, m), none if it varies by at most twice `error`; closed: it is periodic.
+
+    Arguments and definition of a peak: as of `count_periodic_peaks_and_valleys` and in the module's docstring.
+    """
+    # The points are taken from the highest to the lowest, as islands rise from a falling sea. A point without a higher
+    # neighbor is a new island, with a maximum as its top. Where a point joins islands, the lower ones end: the
+    # prominence of their maxima is their height above this point, the saddle. Maxima of too little prominence are
+    # merged into that of the highest island.
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
         return PeakBasins([], np.full(mu.shape, -1))

@@ -28,7 +28,11 @@ def word_trades(trades: Sequence[SceneTrade]) -> str:
 
 
 def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
-    """Return, by equations solved, the fastest method for TARGET_ERRORS in words; one that estimates errors if any."""
+    """
+    Return, for each question (equations to solve), its title and a text on the fastest method for each target error.
+
+    A method that estimates its error is preferred to a faster one that does not.
+    """
     answers = []
     for question in trade.questions:
         parts = []
@@ -106,12 +110,14 @@ def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, 
 
 
 TRADES = ResultField(  # results field: error against compute time, read from the file that the command `tradeoff` wrote
-    "tradeoff",
-    list[SceneTrade],
-    trade.STORED.word_field("error against compute time for every model and parameter"),
+    name="tradeoff",
+    kind=list[SceneTrade],
+    meaning=trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load_trades,
 )
-GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
+GROWTH = make_stored_field(  # results field: growth of the compute time, read from the file of `tradeoff --growth`
+    growth.STORED, name="growth", meaning="how the cost grows with bodies, duration, phase pairs and workers"
+)
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
@@ -124,11 +130,11 @@ def _section_context(report: Report) -> Mapping[str, Any]:
 
 FEATURE = Feature(  # error against compute time, and growth of this time: results fields and report section
     "tradeoff",
-    (TRADES, GROWTH),
+    fields=(TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        trade.STORED.word_how_to_make(" SCENE"),
-        _section_context,
+        absent=trade.STORED.word_how_to_make(" SCENE"),
+        context=_section_context,
         verifies=True,
         verdict=lambda results: word_trades(TRADES.get(results) or ()),
     ),

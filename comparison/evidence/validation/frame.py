@@ -195,8 +195,8 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
 
 def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
     """Compare all frame runs with predictions by one friction ratio, and by load-dependent friction if possible."""
-    # The first run is that to which the ratio is fitted. `own` has, for each run, the inputs with the ratio fitted to it
-    # alone: they serve to find the cause of a difference.
+    # The first run is that to which the ratio is fitted. `own` has, for each run, the inputs with the ratio fitted to
+    # it alone: they serve to find the cause of a difference.
     folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST_FITTED_WEIGHT) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
