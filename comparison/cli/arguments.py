@@ -195,7 +195,11 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return a line: where finished results are kept, how to go on. batches: total of tasks of several phase pairs."""
+    """
+    Return a line that says where finished results are kept, and which command goes on.
+
+    batches: number of batches (tasks of several phase pairs) of the whole run, None for a command that has none.
+    """
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:
