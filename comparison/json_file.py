@@ -60,7 +60,7 @@ class StoredFile(Generic[T]):
     command: str  # command that writes it
 
     def word_field(self, meaning: str) -> str:
-        """Return the description of the results field with this file's content: its meaning, and its command."""
+        """Return the description of the results field that holds this file's content, in words."""
         return f"{meaning}; null unless {self.command} left it next to the report"
 
     def word_how_to_make(self, argument: str = "") -> str:

@@ -35,7 +35,7 @@ class FittedSlope(NamedTuple):
 
 @result
 class Trend:
-    """Power law by which a relative difference of amplification falls with a parameter; verdict on its exponent."""
+    """Power law by which a relative difference of amplification falls with a parameter, and how it is judged."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]

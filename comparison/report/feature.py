@@ -26,12 +26,12 @@ Value = TypeVar("Value")  # type of the value of a field
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a run computed: study, amplification surfaces, results of analyses, families of variants."""
+    """Everything that a run computed."""
 
     study: Study
-    surfaces: xr.Dataset
+    surfaces: xr.Dataset  # amplification by scene, model, body and phases
     found: Mapping[str, Any]  # results of the analyses by key of the feature
-    families: Sequence[Family] = ()
+    families: Sequence[Family] = ()  # scene files of several scenes, as a value in them runs
 
 
 @dataclass(frozen=True)
@@ -68,12 +68,12 @@ def make_stored_field(stored: StoredFile[Value], name: str, meaning: str) -> Res
 
 @dataclass(frozen=True)
 class SceneField(Generic[Value]):
-    """A field of each scene's results: its key in summary.json, type, description, and function that computes it."""
+    """A field of each scene's results."""
 
-    name: str
+    name: str  # key in summary.json
     kind: type[Value]
-    meaning: str
-    compute: Callable[[Findings, Scene], Value]
+    meaning: str  # description in the schema of summary.json
+    compute: Callable[[Findings, Scene], Value]  # makes the value for a scene from everything that was found
 
     def read_from(self, scene: SceneResult) -> Value:
         """Return the value of this field in the results of a scene."""

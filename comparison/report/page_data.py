@@ -73,7 +73,7 @@ def _collect_feature_data(report: Report, scene: Scene, say: Callable[[str], obj
 def _read_encodable(
     read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene
 ) -> Mapping[str, Any]:
-    """Return a feature's data of a scene; raise an error if JSON cannot hold them, so that only they are lost."""
+    """Return a feature's data of a scene; raise an error if JSON cannot hold them, so that no other data are lost."""
     data = read(report, scene)
     _format_json(dict(data))
     return data
@@ -123,7 +123,7 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Return whether a model's values are drawn as a surface as they are: all computed, and no user's engine."""
+    """Return whether a model's values are drawn as a surface: it has all phases and is no engine of the user."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 

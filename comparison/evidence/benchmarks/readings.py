@@ -80,7 +80,7 @@ def compute_natural_periods(motion: Trajectory) -> Array:
 
 
 def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:
-    """Return times from `begin` to `end`, s: samples of the motion, each interval divided in READING_PARTS."""
+    """Return instants from `begin` to `end`, s, READING_PARTS for every interval between samples of the motion."""
     inner = motion.time[(motion.time > begin) & (motion.time < end)]
     knots = np.concatenate([[begin], inner, [end]])
     parts = np.arange(READING_PARTS) / READING_PARTS

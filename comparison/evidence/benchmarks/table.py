@@ -123,7 +123,7 @@ class Benchmarks:
 
 
 def verdict_line(table: Benchmarks) -> str:
-    """Return a line on all benchmarks: number of each verdict, and the largest relative error not met."""
+    """Return a line that counts the verdicts of all benchmarks, and names the largest relative error not met."""
     off = [
         (row.error_of(side) or 0.0, row.published, f"{each.name}, {row.quantity}, {side}")
         for each, row, side, number in table.iterate_numbers()

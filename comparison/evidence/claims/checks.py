@@ -157,7 +157,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Return the verdict whether body 2's amplification has several peaks and valleys, and more than body 1's."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
-        """Return peak and valley counts of bodies 1 and 2 over the phases; share: least prominence / surface range."""
+        """Return the peaks and valleys of bodies 1 and 2 that have at least this share of the range as prominence."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:

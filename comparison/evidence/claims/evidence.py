@@ -37,7 +37,7 @@ class Evidence:
     case: str = ""  # name of the scene in STATEMENT_CASES
 
     def flat(self, body: int) -> bool:
-        """Return whether a body's amplification varies over phases within its errors, or too little for resonance."""
+        """Return whether a body's amplification varies by no more than its errors, or too little for a resonance."""
         mu = self.mu[..., body - 1]
         return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT_RANGE_RATIO * abs(float(mu.mean()))))
 

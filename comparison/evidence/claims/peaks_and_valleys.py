@@ -54,10 +54,10 @@ def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = 
 
 
 def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return peak and valley counts of the mean amplification as a function of alpha1 - alpha2, -2 pi to 2 pi."""
+    """Return the numbers of peaks and valleys of the mean amplification over alpha1 - alpha2, from -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
-    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
+    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])  # mean along the k-th diagonal
     if np.ptp(along) < share * np.ptp(mu):
         return PeakCounts(0, 0)
     return _count_bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
@@ -118,7 +118,7 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
 
 
 def _root_of_node(parent: list[int], node: int) -> int:
-    """Return the root of a node in a union-find forest (parent: index of each node's parent); shorten the path."""
+    """Return the root of a node in a union-find forest, given each node's parent; shorten the path to it."""
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

@@ -91,6 +91,7 @@ def _second_differences(values: Array) -> Array:
 
 def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
     """Return the grid indices of the largest second differences, no two adjacent, with the direction of each."""
+    # Divided by the squared length of the step, so that a diagonal direction compares with the others
     size = np.array(
         [
             np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way)

@@ -250,7 +250,7 @@ def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Computations of the models in `columns` at the extremes in `rows`, each stopped after `limit` s of processor."""
+    """Computations of every model in `columns` at every extreme in `rows`; one is stopped after `limit` s."""
 
     rows: Sequence[ExtremeCase]
     columns: Sequence[ModelColumn] = COLUMNS

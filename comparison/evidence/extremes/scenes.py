@@ -58,7 +58,7 @@ def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """Return a scene of large radius with its bodies raised by the growth of the radius, as far from the contacts."""
+    """Return a scene of large radius with its bodies raised by as much, so that they are as far above the contacts."""
     rise = max(stated["isolator"]["radius"] - BASELINE_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 

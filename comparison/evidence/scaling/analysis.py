@@ -112,7 +112,7 @@ def _name_peak(scene: Scene, supremum: bool) -> str:
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """Analysis of how the difference of amplification, exact - small equations, falls with loading and friction."""
+    """Analysis of how the step from small to exact equations falls as loading and friction become smaller."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1

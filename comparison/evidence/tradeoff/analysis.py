@@ -123,7 +123,7 @@ def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult
 
 
 def join_results(parts: Sequence[SettingResult]) -> SettingResult:
-    """Return results of several tasks of one function as one: times added, steps averaged, first error kept."""
+    """Join the results of one function's tasks: times are added, steps averaged, and the first error is kept."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     return SettingResult(
         mu=mu,
@@ -194,7 +194,7 @@ class TradeOff:
         return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
-        """Return one scene's amplification errors and processor times by method and parameter value, as measured."""
+        """Return the measured errors and processor times of every setting for one scene."""
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )

@@ -22,7 +22,7 @@ def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
 
 
 def word_trades(trades: Sequence[SceneTrade]) -> str:
-    """Return a clause: numbers of settings (method and parameter value) and scenes measured; speed is not judged."""
+    """Return a clause that says how many settings (methods with a parameter value) and scenes were measured."""
     settings = sum(len(trade.entries) for trade in trades)
     return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
 
@@ -84,7 +84,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
     }
 
     def rank(method: str) -> tuple[bool, int]:
-        """Return the sort key of a method: without model error first, then by how often it is on the Pareto front."""
+        """Return the sort key of a method: first those of the same model, then those often on the Pareto front."""
         return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
 
     shown = sorted(curves, key=rank)[:MAX_CURVES]

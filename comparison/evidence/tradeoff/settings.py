@@ -120,7 +120,7 @@ def list_questions(scene: Scene) -> list[TradeoffQuestion]:
 
 
 def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Return methods with parameter values to measure for a scene; quick: fewer values of parameters that take long."""
+    """Return the settings to measure for a scene; with `quick`, fewer of those that take long."""
     keys = {question.key for question in list_questions(scene)}
     every = [
         *_reference_settings(scene),

@@ -47,7 +47,7 @@ UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
 class Setup(NamedTuple):
-    """Inputs with which a frame run is computed: mass, stiffness, damping, base motion, weight and friction of disc."""
+    """Inputs with which a run of the frame is computed; the defaults are those that the authors of the runs state."""
 
     mass: float = 3.0799  # kg, mass of the plate
     stiffness: float = 1191.0  # N/m, stiffness of the frame

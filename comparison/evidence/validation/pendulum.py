@@ -46,6 +46,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     inverse = np.linalg.inv(terms[fitted].T @ terms[fitted])
     scatter = table.COVERAGE_FACTOR * float(np.sqrt(residuals @ residuals / (FITTED_HALF_SWINGS - 2) * inverse[1, 1]))
     periods, reading = np.diff(instants)[: 2 * PERIOD_HALF_SWINGS], table.COVERAGE_FACTOR * step / np.sqrt(12.0)
+    # Fitted inputs: half period, s; angle lost per half swing, rad; first angle, rad
     nominal = np.array([periods[:PERIOD_HALF_SWINGS].mean(), loss, start])
     uncertain = np.array([_compute_uncertainty_of_mean(periods[:PERIOD_HALF_SWINGS]), scatter, reading])
     sizes = 1e3 * (along - middle * sides)
@@ -67,7 +68,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     )
 
     def read(motion: Trajectory) -> Array:
-        """Return a computed motion's SHOWN_TURNING_POINTS, mrad, and mean half period after the fitted swings, ms."""
+        """Return the quantities in `data` as a computed motion has them: turning points, mrad, and half period, ms."""
         passed, angles = _compute_turns(motion)
         return 1e3 * np.array(
             [
@@ -77,7 +78,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the motion by one code (side); values: half period, s; angle lost per half swing, first angle, rad."""
+        """Return the motion by one code (side) with the inputs `values`, in the order of `nominal`."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -133,7 +134,7 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     )
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
-        """Return half periods at PREDICTED_ANGLES, ms, by one code (side); half: half period for vanishing angle, s."""
+        """Return the half periods at PREDICTED_ANGLES, ms, by one code, if that for vanishing angle is `half`, s."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))

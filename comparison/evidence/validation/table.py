@@ -204,13 +204,13 @@ def join_findings(parts: Sequence[ExperimentFindings]) -> ExperimentFindings:
 
 
 class MeasuredData(NamedTuple):
-    """Measured quantities: names, units, use (calibrated or predicted), values and expanded uncertainties."""
+    """Measured quantities of one experiment; every field has an element for each."""
 
     names: Sequence[str]
     units: Sequence[str]
-    use: Sequence[str]
+    use: Sequence[str]  # "calibrated" if an input is fitted to the quantity or its run, otherwise "predicted"
     values: Array
-    uncertainty: Array
+    uncertainty: Array  # expanded uncertainties
 
 
 def compute_released_motion(
