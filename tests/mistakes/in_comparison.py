@@ -592,7 +592,7 @@ MISTAKES = (
     Mistake(EVIDENCE + "claims/table.py", "scene.digest() != STATEMENT_CASES[case]().digest() or ", "",
             "A changed scene stands for the paper's.",
             (EVIDENT + "claims.py::test_the_surfaces_of_the_study_are_used_where_it_has_the_grid",)),
-    Mistake(EVIDENCE + "claims/readings.py", 'models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)', 'models.SMALL_AS_INTEGRATED.key, None)',
+    Mistake(EVIDENCE + "claims/readings.py", 'model=models.SMALL_AS_INTEGRATED.key, cutoff=readings.DEFAULT_V_C', 'model=models.SMALL_AS_INTEGRATED.key, cutoff=None',
             "The supremum is called as integrated.", (EVIDENT + "claims.py::test_evidence_of_the_paper_is_what_the_equations_give",)),
     Mistake(EVIDENCE + "claims/smoothness.py", "MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 1.5, 0.5", "MAX_FOLD_EXPONENT, MAX_JUMP_EXPONENT = 0.5, 0.5",
             "A fold is called smooth.", (EVIDENT + "peaks_and_valleys.py::test_the_exponent_is_that_of_the_shape",)),

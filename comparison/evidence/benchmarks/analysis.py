@@ -64,7 +64,7 @@ class BenchmarkTable:
             {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
             for case in self.cases
         ]
-        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
+        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], run={})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
         """Return the task that solves a benchmark by one side."""
@@ -93,7 +93,8 @@ def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
     clock = time.process_time()
     trajectory = import_function(MODEL_OF_SIDE[side].trajectory)
     motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCE_OF_SIDE[side], **settings)
-    return SideNumbers(*_read_numbers(case.reading, motion), str(motion.status), time.process_time() - clock)
+    values, errors = _read_numbers(case.reading, motion)
+    return SideNumbers(values=values, errors=errors, ending=str(motion.status), seconds=time.process_time() - clock)
 
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:

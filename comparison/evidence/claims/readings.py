@@ -19,9 +19,11 @@ class PeakReading:
 
 
 # Definition of the peak acceleration (5.1): accelerations count at rest and at sliding speeds above v_c = 1 mm/s
-AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_AS_INTEGRATED.key, readings.DEFAULT_V_C)
+AS_INTEGRATED = PeakReading(
+    name=readings.AS_INTEGRATED, model=models.SMALL_AS_INTEGRATED.key, cutoff=readings.DEFAULT_V_C
+)
 # Definition of the peak acceleration (5.1): any sliding speed counts, also the limit as it falls to 0 before a stop
-LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
+LITERAL_SUPREMUM = PeakReading(name=readings.LITERAL_SUPREMUM, model=models.SMALL.key, cutoff=None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)  # both definitions of the peak acceleration (5.1), in the order of tables
 
 

@@ -268,7 +268,8 @@ class Extremes:
             row[cell.column.key] = results.value(self._task(cell), _entry_of_failure)
         used = {key for row in entries.values() for key in row}
         titles = {column.key: column.title for column in self.columns if column.key in used}
-        return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
+        rows = [Extreme(group, title, row) for (group, title), row in entries.items()]
+        return Matrix(columns=titles, rows=rows, run={})
 
     def _task(self, cell: MatrixCell) -> Task:
         """Return the task that judges a model at an extreme; it waits for compiled equations only if it solves them."""

@@ -190,7 +190,9 @@ class TradeOff:
             measurement = Measurement(scene, function, phases[first : first + size])
             rough = each * len(measurement.phases)
             timeout = limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS
-            tasks.append(Task(measure_setting, measurement, STAGE, rough, about=scene, timeout=timeout, group=engine))
+            tasks.append(
+                Task(measure_setting, measurement, STAGE, seconds=rough, about=scene, timeout=timeout, group=engine)
+            )
         return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:

@@ -102,7 +102,7 @@ def _measure_cost_growth(
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
     series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, make_process_pool)]
     facts = collect_run_facts("tradeoff", options, words, begin)
-    measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
+    measured = MeasuredGrowth(schema=growth.SCHEMA, scene=scene.name, title=scene.title, series=series, run=facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     write_and_show(out, write, partial(print_growth, console, series))
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)

@@ -130,8 +130,16 @@ def make_cost_series(
     quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]
 ) -> CostSeries:
     """Return the series of times with its fitted slope; seconds: NaN where there is no measurement."""
-    slope = map(finite_or_none, fit_slope(values, seconds))
-    return CostSeries(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
+    slope, uncertainty = map(finite_or_none, fit_slope(values, seconds))
+    return CostSeries(
+        quantity=quantity,
+        unit=unit,
+        model=model,
+        values=list(values),
+        seconds=[finite_or_none(each) for each in seconds],
+        slope=slope,
+        uncertainty=uncertainty,
+    )
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:

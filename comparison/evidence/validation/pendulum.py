@@ -37,7 +37,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     numbers = np.arange(SHOWN_TURNING_POINTS[-1] + 1)
     if len(turns) < len(numbers):
         raise make_file_error(DECAY_FILE, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
-    sides = (-1.0) ** numbers
+    sides = (-1.0) ** numbers  # 1 on the side of the first turning point, -1 on the other
     # Columns of the fit, by what they multiply: first angle, loss per half swing, offset of the rest position
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
     along, fitted = np.sign(turns[0]) * sides * turns[: len(numbers)], slice(0, FITTED_HALF_SWINGS + 1)
