@@ -232,9 +232,7 @@ def compute_released_motion(
     if side == ENGINE:
         return multibody.trajectory(scene, phases, tolerance=tolerance, regularization=regularization, initial=initial)
     threshold = regularization if side == SMOOTHED else None
-    return reference.trajectory(
-        scene, phases, equations=equations, regularization=threshold, tolerance=1e-7, initial=initial
-    )
+    return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
 
 
 def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
