@@ -52,15 +52,15 @@ def word_how_to_make(command: str) -> str:
 
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """JSON file that one command writes and the next report in the folder shows; what: its content in words."""
+    """JSON file of results that one command writes into the folder of a report, which then shows them."""
 
-    name: str
-    kind: type[T]
-    what: str
-    command: str
+    name: str  # name of the file
+    kind: type[T]  # type of the results
+    what: str  # what it holds, in words for messages, as "a table of benchmarks"
+    command: str  # command that writes it
 
     def word_field(self, meaning: str) -> str:
-        """Return the description of the results field with this file's content: its meaning, and its command."""
+        """Return the description of the results field that holds this file's content, in words."""
         return f"{meaning}; null unless {self.command} left it next to the report"
 
     def word_how_to_make(self, argument: str = "") -> str:

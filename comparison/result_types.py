@@ -71,7 +71,9 @@ def require_size(what: str, values: Sized, count: int) -> None:
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
-RESULT_CONFIG = ConfigDict(  # pydantic's options for every class of results: texts of fields, checks, no other keys
+# Pydantic's options for every class of results: take the texts below fields as their meaning, check also what was
+# checked before, and admit no other keys.
+RESULT_CONFIG = ConfigDict(
     use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 

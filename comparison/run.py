@@ -98,7 +98,7 @@ def main(
 
 
 def _tighter_command(options: Options, words: Sequence[str]) -> list[str]:
-    """Return a command to repeat model differences alone at a tenth of the tolerance, reported in another folder."""
+    """Return a command that computes only the differences of models again, at a tenth of the tolerance."""
     place = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
@@ -110,7 +110,14 @@ def _make_study(options: Options, hierarchy: Sequence[Model]) -> Study:
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
     hierarchy = (*hierarchy, *options.models)
-    return Study(options.scenes, options.grid, options.tolerance, hierarchy, options.full, selection=options.selection)
+    return Study(
+        options.scenes,
+        grid=options.grid,
+        tolerance=options.tolerance,
+        hierarchy=hierarchy,
+        full=options.full,
+        selection=options.selection,
+    )
 
 
 class StudyRun:
@@ -154,9 +161,9 @@ class StudyRun:
 
     def _close(self, reports: ReportWriter, jobs: int, stop: KeyboardInterrupt | None) -> int:
         """
-        Print the last report's results and further commands; return the exit code; stop: interrupt to raise again.
+        Print the results of the last report and what to do next; return the exit code.
 
-        Raises `stop`, the interrupt that ended the run, if any; EndedEarlyError if there is no report.
+        stop: the interrupt that ended the run, if any; it is raised again. Raises EndedEarlyError without a report.
         """
         options, found = replace(self._options, jobs=jobs), reports.results
         if found is not None:
@@ -177,7 +184,11 @@ class StudyRun:
         self._console.print(line, soft_wrap=True)
 
     def _open_results(self, surfaces: Sequence[Task]) -> TaskResults:
-        """Return the stored results of earlier runs, less those to compute anew; print how many; surfaces: tasks."""
+        """
+        Open the store of results, print how many earlier runs left, and return it; --fresh removes them first.
+
+        surfaces: tasks that compute the amplification.
+        """
         first = list_first_tasks(self._study, select_analyses(self._study))
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)

@@ -128,17 +128,19 @@ def _broken_limits(
     batches = study.batches()
     answers = [execute_batch(batch) for batch in batches]
     surfaces = label_surfaces(study, batches, answers)
-    broken = [
-        line
-        for name, limit in stated.items()
-        for compared, measure, _ in [name.partition("_maximum")]
-        for line in _word_breaches(surfaces, scene, asked[name], compared, bool(measure), limit)
-    ]
+    broken: list[str] = []
+    for name, limit in stated.items():
+        compared, maximum, _ = name.partition("_maximum")
+        broken += _word_breaches(surfaces, scene, asked[name], compared, bool(maximum), limit)
     return broken + _word_missing_values(list_missing_values(study, surfaces), answers, failed)
 
 
 def _word_missing_values(gaps: Sequence[MissingValues], answers: Sequence[BatchResult], failed: int) -> list[str]:
-    """Return a line per model with missing values, and the solvers' messages; none for at most `failed` missing."""
+    """
+    Return a line for each model with missing values, and the solvers' messages.
+
+    There is no line if at most `failed` values are missing.
+    """
     if not sum(gap.points + gap.unusable for gap in gaps) > failed:
         return []
     why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
@@ -185,7 +187,7 @@ def assert_demands(
     statistic : {"largest", "mean"}, optional
         What the limits are on, over the motions.
     stored : str or Path, optional
-        Folder of an ensemble of before, which ``phase-resonance ensemble --out`` wrote: its demands are those of now.
+        Folder of an earlier ensemble, which ``phase-resonance ensemble --out`` wrote: its demands must be met again.
     within : float
         Share of a demand by which it may differ from the stored one besides both numerical errors.
 
@@ -230,7 +232,11 @@ def assert_demands(
 def _word_breaches(
     surfaces: xr.Dataset, scene: Scene, pair: Pair, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
-    """Yield a line for each body whose median difference, or with `maximum` its largest, exceeds the limit."""
+    """
+    Yield a line for each body whose difference between two models (`pair`) exceeds the limit.
+
+    name: what the difference is called in the line. maximum: whether its largest value counts, otherwise its median.
+    """
     for body in range(1, len(scene.bodies) + 1):
         step = compute_difference(surfaces, scene.name, pair, body)
         if not step.known.any():

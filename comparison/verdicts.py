@@ -80,7 +80,11 @@ def word_counts(counts: Mapping[Verdict, int], what: str = "comparison") -> str:
 def word_counts_and_largest(
     counts: Mapping[Verdict, int], off: Iterable[tuple[float, float, str]], what: str = "comparison"
 ) -> str:
-    """Return the counts and the largest relative error not met, in words; off: error, stated value, place of each."""
+    """
+    Return in words the counts, and the largest relative error among the values that are not met.
+
+    off: for each value that is not met, its error, the stated value, and where it is, in words.
+    """
     words = word_counts(counts, what)
     relative = [(error / stated, place) for error, stated, place in off if stated]
     if not relative:

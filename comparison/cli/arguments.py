@@ -119,7 +119,7 @@ def _refuse_beyond(option: str, text: str, kind: type[Value], least: Value, most
 
 @contextmanager
 def report_write_errors(folder: Path, option: str = "--out") -> Iterator[None]:
-    """Turn a write error of the `with` block into an early end with code 3; option: the one that names the folder."""
+    """End the command with code 3 if a file cannot be written in the `with` block; `option` named the folder."""
     try:
         yield
     except OSError as error:
@@ -159,7 +159,7 @@ def command(main: Callable[Concatenate[Sequence[str], Parameters], int]) -> Call
 
 
 def list_starting_words(command: str) -> list[str]:
-    """Return the first words of a command line; "python -m" and module for `run` if no console script started it."""
+    """Return the words that start a command: the console script, or "python -m" if that started the study (`run`)."""
     script = ["phase-resonance", command]
     by_script = command != "run" or sys.argv[0] == " ".join(script)
     return script if by_script else ["python", "-m", f"comparison.{command}"]
@@ -195,7 +195,11 @@ def edit_command_line(
 
 
 def word_resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """Return a line: where finished results are kept, how to go on. batches: total of tasks of several phase pairs."""
+    """
+    Return a line that says where finished results are kept, and which command goes on.
+
+    batches: number of batches (tasks of several phase pairs) of the whole run, None for a command that has none.
+    """
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT_KIND]
     if batches is None:

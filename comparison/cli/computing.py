@@ -59,7 +59,8 @@ def compute_tasks(
     """
     Return the results of all tasks of a command, stored or computed. Raises SceneError, EndedEarlyError.
 
-    add_tasks: function that returns further tasks, chosen by the results of the first ones.
+    words: those of the command line. models: import paths of the functions that the tasks call. executor: pool of
+    workers if the options name no cluster. add_tasks: returns further tasks, chosen by the results of the first ones.
     """
     width = read_number_of_jobs(options)
     out = resolve_destination(options.out)
@@ -95,7 +96,8 @@ def open_workers(
     """
     Open worker processes or a cluster for a `with` block; yield their number and pool. Raises SceneError.
 
-    Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on.
+    What ends the block early becomes an EndedEarlyError. Its line says what is kept and how to go on: `hint` makes that
+    of the words of a command line.
     """
     try:
         if scheduler is not None:

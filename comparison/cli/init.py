@@ -50,7 +50,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 def make_study_files(name: str) -> dict[str, bytes]:
-    """Return the contents of the files of a new study by path in its directory. name: of the study."""
+    """Return the contents of the files of a new study named `name`, by path in its directory."""
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in FILES_OF_TEMPLATE.items()}
     source = make_requirement_line()
@@ -60,7 +60,7 @@ def make_study_files(name: str) -> dict[str, bytes]:
 
 
 def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files into a new or empty directory: all or none. contents: bytes by path in it. Raises OSError."""
+    """Write files (`contents`: bytes by path) into a new or empty directory, either all or none. Raises OSError."""
     inside = place.is_dir()  # Do not replace an existing directory: it may be the user's current one.
     made = make_parents(place.parent)
     try:

@@ -26,19 +26,19 @@ DEFAULT_GRID = 48  # number of phases per axis if --grid is not given
 class Options:
     """Checked options of the command line of `python -m comparison.run`."""
 
-    families: tuple[Family, ...]
-    grid: int
-    out: Path
-    jobs: int
-    tolerance: float
-    budget: float | None
-    check: bool
-    plan: bool
-    fresh: bool = False
-    scheduler: str | None = None
-    full: bool = False
-    max_work: float | None = None
-    selection: Selection = EVERYTHING
+    families: tuple[Family, ...]  # scenes of each file: several if a value in it runs
+    grid: int  # phases per axis
+    out: Path  # folder of the report
+    jobs: int  # number of worker processes
+    tolerance: float  # relative error asked of every amplification
+    budget: float | None  # s, wall time after which the run ends with the last complete level; None: no limit
+    check: bool  # whether broken acceptance limits decide the exit code
+    plan: bool  # whether to print what would be computed, and compute nothing
+    fresh: bool = False  # whether to compute anew what earlier runs stored
+    scheduler: str | None = None  # address of the cluster, None for worker processes
+    full: bool = False  # whether to compute also what the scenes do not require
+    max_work: float | None = None  # largest number of Exudyn's steps for a phase pair, None for the usual one
+    selection: Selection = EVERYTHING  # analyses that are run
     models: tuple[Model, ...] = ()  # user's engines
 
     @property

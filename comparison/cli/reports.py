@@ -34,16 +34,16 @@ MIN_REPORT_INTERVAL = 3.0  # s, shortest time from one report of a run to the ne
 
 @dataclass(frozen=True)
 class CompleteLevel:
-    """Level (grid of phases) of a run, with all results computed; study: without models that have no values."""
+    """Level of a run, that is the study on one grid of phases, of which everything is computed."""
 
     level: StudyLevel
-    study: Study
+    study: Study  # the study of the level without models that have no values
     tasks: Sequence[Task]  # tasks that computed `surfaces`
-    surfaces: xr.Dataset
+    surfaces: xr.Dataset  # amplification by scene, model, body and phases
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute a level (grid of phases): amplification surfaces, analyses that need none, then those that need them."""
+    """Compute the amplification surfaces of a level (grid of phases), then the analyses that need them."""
     analyses = select_analyses(level.study)
     tasks = make_surface_tasks(level.study)
     runner.run([*tasks, *list_first_tasks(level.study, analyses)], make_compiling_task)
@@ -59,13 +59,16 @@ class ReportWriter:
     """
     Writer of the report of each level (grid of phases) of a run.
 
-    jobs: workers. began: when the run began. place: where the reports are: next to the folder of the options if that
-    holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
-    the longest time that one took to write, s.
+    place: folder of the reports, which is next to that of the options if this one holds something else. results, level:
+    those of the last report, None before the first. seconds: longest time that a report took to write, s.
     """
 
     def __init__(self, options: Options, jobs: int, words: Sequence[str], began: Clock) -> None:
-        """Prepare the writer; no report is written yet. words: command line."""
+        """
+        Prepare the writer; no report is written yet.
+
+        jobs: number of workers. words: those of the command line. began: when the run began.
+        """
         self._options, self._jobs, self._words, self._began = options, jobs, words, began
         self._last = began.wall
         self.place = options.out
@@ -74,9 +77,7 @@ class ReportWriter:
         self.seconds = 0.0
 
     def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
-        """
-        Return whether an intermediate level's report is to be written: it has new results, and no report is recent.
-        """
+        """Return whether a level has new results and the last report is old enough for another one."""
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= MIN_REPORT_INTERVAL
 

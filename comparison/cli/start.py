@@ -72,7 +72,7 @@ def _read_purpose(package: str) -> str:
 
 
 class Clock(NamedTuple):
-    """Wall time and processor time, s, of this process and its workers (running ones: on Linux only)."""
+    """Wall time and processor time, s, of this process and its workers; those that still run count on Linux only."""
 
     wall: float
     processor: float
@@ -101,7 +101,7 @@ _started: list[Clock] = []  # the time at which this process's command started, 
 
 
 def find_command_start() -> Clock:
-    """Return the times when the command of this process started; those of now if a program calls the function."""
+    """Return the time at which this process's command started, or that of now if a program called its function."""
     return _started.pop() if _started else Clock.now()
 
 

@@ -86,7 +86,7 @@ def _print_levels(console: Console, study: Study) -> None:
 
 
 def print_stored(console: Console, results: TaskResults, batches: Sequence[Task], others: Sequence[Task]) -> None:
-    """Print how many results are stored. batches: tasks of amplification over phases. others: tasks of analyses."""
+    """Print how many results are stored of `batches`, the tasks of the surfaces, and of `others`, those of analyses."""
     stored, analyses = sum(map(results.holds, batches)), sum(map(results.holds, others))
     if results.cache is not None and stored + analyses:
         rest = f", {analyses} of {len(others)} analyses" if others else ""
@@ -112,9 +112,10 @@ def print_records(
     console: Console, named: Sequence[tuple[str, Scene]], short: bool = False, is_suite: bool = False
 ) -> None:
     """
-    Print what was read of every recorded motion. named: name and scene of each. short: one line for each.
+    Print what was read of every recorded motion.
 
-    is_suite: the motions are of one suite, and a line names those that are implausible beside the others.
+    named: name and scene of each motion. short: whether one line for each is enough. is_suite: whether the motions are
+    of one suite, so that a line names those that are implausible beside the others.
     """
     names, scenes = zip(*named) if named else ((), ())
     records = describe_records(scenes, names)
@@ -157,7 +158,7 @@ def _print_reductions(console: Console, study: Study) -> None:
 
 
 def make_table(*headings: str) -> Table:
-    """Return an empty table for the terminal: words align left, numbers right; words are broken if it is too wide."""
+    """Return an empty table for the terminal; columns of words are aligned left, and broken if it is too wide."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
         words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")

@@ -23,13 +23,24 @@ class ForcedRatio:
 
 
 def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """Return ratios of upper bodies' amplitudes to the platform's under each harmonic; an empty list under a record."""
+    """
+    Return the ratio of each upper body's amplitude to the platform's under each harmonic along each axis.
+
+    The list is empty for a platform alone and under a recorded ground motion, which has no harmonics.
+    """
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [
-        ForcedRatio(body, harmonic, name, float(2.0 * np.pi / s.imag), float(forced), float(steady))
+        ForcedRatio(
+            body=body,
+            harmonic=harmonic,
+            axis=name,
+            period=float(2.0 * np.pi / s.imag),
+            ratio=float(forced),
+            steady=float(steady),
+        )
         for axis, name in enumerate(AXES)
-        for harmonic, s in enumerate(exponents(scene), start=1)
+        for harmonic, s in enumerate(exponents(scene), start=1)  # s = -decay + i omega
         if scene.amplitudes[axis, harmonic - 1] != 0.0
         for body, (forced, steady) in enumerate(
             zip(*(_amplitude_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
@@ -38,8 +49,13 @@ def compute_forced_ratios(scene: Scene) -> list[ForcedRatio]:
 
 
 def _amplitude_ratios(scene: Scene, axis: int, s: complex) -> Array:
-    """Return upper bodies' amplitudes / the platform's in motions ~ exp(s t), by the links' linear equations (4.4)."""
-    links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
+    """
+    Return each upper body's amplitude over the platform's in a motion like exp(s t); infinite at resonance.
+
+    The platform's motion drives the links: by (4.4), the inertia of each upper body balances the forces of the links
+    below and above it, which gives a tridiagonal system of linear equations for the amplitudes.
+    """
+    links = scene.stiffness[:, axis] + s * scene.damping[:, axis]  # force per stretch of each link
     matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
     matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)
     drive = np.zeros(len(links), complex)

@@ -9,5 +9,5 @@ EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"
 
 
 def interpolate_platform(motion: Trajectory, axis: int = 0) -> CubicHermiteSpline:
-    """Return the platform position along x (axis 0) or y (1), m, as a function of time, s, cubic between instants."""
+    """Return the platform's position along x (axis 0) or y (1), m, as a cubic function of time between instants."""
     return CubicHermiteSpline(motion.time, motion.position[:, 0, axis], motion.velocity[:, 0, axis])

@@ -1,14 +1,14 @@
 """Report features made of trends: how a difference falls with a parameter (convergence and scaling)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
 from comparison.evidence.trends import Trend, word_trends
 from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import MAX_CURVES, Panel, make_panel, replace_nan
-from comparison.report.section import Section
+from comparison.report.section import Report, Section
 from comparison.runner.mapped_analysis import MappedAnalysis
 
 
@@ -19,28 +19,34 @@ def make_trend_feature(
     """
     Return the result field and report section of an analysis that fits power laws to differences of amplification.
 
-    title: of its section. scenes: those that have it. meaning: of its field. column: title of the column of medians.
-    parameter: title of the axis of the panels, where all have one. texts: what else its template reads.
+    title: title of the section. scenes: the scenes for which there is a trend, in words. meaning: description of the
+    result field. column: title of the table column with the median differences. parameter: axis title of the plots if
+    all trends have the same parameter. texts: further variables of the section's template.
     """
-    found = ResultField(analysis.key, list[Trend], f"{meaning}; null if not computed")
+    found = ResultField(name=analysis.key, kind=list[Trend], meaning=f"{meaning}; null if not computed")
+
+    def make_context(report: Report) -> Mapping[str, Any]:
+        """Return the variables of the section's template."""
+        trends = found.read_from(report.results)
+        panels = make_trend_panels(trends, parameter)
+        return {"key": analysis.key, "trends": trends, "panels": panels, "column": column, **texts}
+
     section = Section(
         title,
-        f"phase-resonance run makes it, of {scenes}",
-        lambda report: {
-            "key": analysis.key,
-            "trends": (trends := found.read_from(report.results)),
-            "panels": make_trend_panels(trends, parameter),
-            "column": column,
-            **texts,
-        },
+        absent=f"phase-resonance run makes it, of {scenes}",
+        context=make_context,
         verdict=lambda results: word_trends(found.read_from(results)),
         verifies=True,
     )
-    return Feature(analysis.key, (found,), analysis=analysis, section=section)
+    return Feature(analysis.key, fields=(found,), analysis=analysis, section=section)
 
 
 def make_trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
-    """Return a log-log plot of median differences against the parameter, with slopes, for each scene and parameter."""
+    """
+    Return log-log plots of median differences against the parameter, with the fitted slopes in the legend.
+
+    Trends of one scene over the same parameter values share a plot.
+    """
     panels = []
     ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
     for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):

@@ -25,17 +25,17 @@ MAX_EXPONENT_DEVIATION = 0.15
 
 
 class FittedSlope(NamedTuple):
-    """Exponent of |difference| ~ parameter^exponent, uncertainty, or both NaN; numbers of differences, phase pairs."""
+    """Exponent n fitted to |difference| ~ parameter^n, with its uncertainty; both are NaN if too little is known."""
 
     exponent: float
     uncertainty: float
-    points: int
-    pairs: int
+    points: int  # number of differences in the fit
+    pairs: int  # number of phase pairs to which these differences belong
 
 
 @result
 class Trend:
-    """Power law by which a relative difference of amplification falls with a parameter; verdict on its exponent."""
+    """Power law by which a relative difference of amplification falls with a parameter, and how it is judged."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -52,7 +52,14 @@ class Trend:
 
 
 def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> FittedSlope:
-    """Return the exponent n of sizes ~ parameter^n, one for all P phase pairs; sizes, absolute errors: (P, values)."""
+    """
+    Return the exponent n of |difference| ~ parameter^n, which all phase pairs have in common.
+
+    sizes, errors: differences and their absolute errors, a row for each phase pair, a column for each parameter value.
+    """
+    # Least squares through log|difference| over log(parameter). Every phase pair has an intercept of its own, which is
+    # gone once its mean is subtracted; the slope is common. The variance of the slope has two parts: `scatter`, from
+    # the distances to the line, and `carried`, from the error bars of the differences.
     known = np.isfinite(sizes) & (errors <= MAX_FITTED_ERROR * np.abs(sizes)) & (sizes != 0.0)
     rows = np.flatnonzero(known.sum(axis=1) > 1)
     points = int(known[rows].sum())
@@ -83,22 +90,23 @@ def fit_trend(
     error_message: str = "",
 ) -> Trend:
     """
-    Return the power law |difference| ~ parameter^n fitted to sizes, with the verdict whether n is `expected`.
+    Return the power law |difference| ~ parameter^n fitted to differences, with the verdict whether n is `expected`.
 
-    sizes, errors: signed differences and errors, (phase pairs, values), NaN if unknown. error_message: what went wrong.
+    sizes, errors: signed differences and their errors, a row for each phase pair, a column for each parameter value,
+    NaN if unknown. error_message: stands in place of the verdict if the differences could not be computed.
     """
     slope = fit_slope(parameter, sizes, errors)
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
     medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
     return Trend(
-        scene,
-        body,
-        what,
-        tuple(parameter),
-        medians,
-        *slope,
-        expected,
-        error_message or _word_slope_verdict(slope, expected),
+        scene=scene,
+        body=body,
+        what=what,
+        parameter=tuple(parameter),
+        medians=medians,
+        **slope._asdict(),
+        expected=expected,
+        verdict=error_message or _word_slope_verdict(slope, expected),
     )
 
 

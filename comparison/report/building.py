@@ -46,13 +46,15 @@ def assemble_report(
     """
     Return all data of a report; a field whose computation raises an error is empty, with a line in `lost`.
 
-    found: results of the features, by key. kind: type of the results, with a field for each feature.
+    surfaces: amplification by scene, model, body and phases. found: results of the features, by key. faults: error
+    messages of the solvers. run: facts of the run, the fields of `Run`. kind: type of the results, with a field for
+    each feature. families: scene files in which a value runs. lost: lines on parts that were lost before.
     """
     parts_lost = LostParts(lost)
 
-    def compute(name: str, function: Callable[..., Any], *words: Any) -> Any:
-        """Return function(*words), a part of the report; if it raises an error, record a line and return None."""
-        return parts_lost.attempt(f"section {name}", partial(function, *words))
+    def compute(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return function(*arguments), a part of the report; if it raises an error, record a line and return None."""
+        return parts_lost.attempt(f"section {name}", partial(function, *arguments))
 
     gaps = list_missing_values(study, surfaces)
     held_out = found.get(CompletedSurfaces.key)
@@ -84,7 +86,15 @@ def assemble_report(
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
-    return Report(study, findings.surfaces, completions, results, found, features, parts_lost.lines)
+    return Report(
+        study=study,
+        surfaces=findings.surfaces,
+        completions=completions,
+        results=results,
+        found=found,
+        features=features,
+        lost=parts_lost.lines,
+    )
 
 
 def _make_scene_fields(findings: Findings, scene: Scene, gaps: Sequence[MissingValues]) -> dict[str, Any]:
@@ -137,9 +147,11 @@ def _record_values(surfaces: xr.Dataset, scene: Scene, models: Sequence[Model]) 
     """Return the amplification factors under the recorded ground motion, by model and body."""
     listed = []
     for model in models:
-        mu, error, status = (
+        mu, error, status = (  # without phases, the grid has one point
             select_values(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
         )
-        for body in range(1, len(scene.bodies) + 1):
-            listed.append(RecordValue(model.key, body, float(mu[body - 1]), float(error[body - 1]), str(status)))
+        listed += [
+            RecordValue(model=model.key, body=body, mu=float(value), error=float(estimate), status=str(status))
+            for body, (value, estimate) in enumerate(zip(mu[: len(scene.bodies)], error), start=1)
+        ]
     return listed

@@ -26,12 +26,12 @@ Value = TypeVar("Value")  # type of the value of a field
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that a run computed: study, amplification surfaces, results of analyses, families of variants."""
+    """Everything that a run computed."""
 
     study: Study
-    surfaces: xr.Dataset
+    surfaces: xr.Dataset  # amplification by scene, model, body and phases
     found: Mapping[str, Any]  # results of the analyses by key of the feature
-    families: Sequence[Family] = ()
+    families: Sequence[Family] = ()  # scene files of several scenes, as a value in them runs
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,14 @@ class ResultField(Generic[Value]):
     """
     Field of the results of a study: a key of summary.json, with a value or null.
 
-    name: its key in summary.json. kind: its type. meaning: its description in the schema. load: reads it from the
-    folder of the report, where a command left it. compute: makes it of what was found and of the results of the scenes,
-    unless it is what was found by its name.
+    Without `load` and `compute`, its value is what the analysis of the same name found.
     """
 
-    name: str
+    name: str  # key in summary.json
     kind: type[Value]
-    meaning: str
-    load: Callable[[Path], Value | None] | None = None
+    meaning: str  # description in the schema of summary.json
+    load: Callable[[Path], Value | None] | None = None  # reads the value from the report's folder: a command left it
+    # Makes the value from everything that was found, and from the results of the scenes
     compute: Callable[[Findings, Sequence[SceneResult]], Value | None] | None = None
 
     def get(self, results: Results) -> Value | None:
@@ -64,17 +63,17 @@ class ResultField(Generic[Value]):
 
 def make_stored_field(stored: StoredFile[Value], name: str, meaning: str) -> ResultField[Value]:
     """Return the results field with the content of a file that a command left next to the report."""
-    return ResultField(name, stored.kind, stored.word_field(meaning), load=stored.load)
+    return ResultField(name=name, kind=stored.kind, meaning=stored.word_field(meaning), load=stored.load)
 
 
 @dataclass(frozen=True)
 class SceneField(Generic[Value]):
-    """A field of each scene's results: its key in summary.json, type, description, and function that computes it."""
+    """A field of each scene's results."""
 
-    name: str
+    name: str  # key in summary.json
     kind: type[Value]
-    meaning: str
-    compute: Callable[[Findings, Scene], Value]
+    meaning: str  # description in the schema of summary.json
+    compute: Callable[[Findings, Scene], Value]  # makes the value for a scene from everything that was found
 
     def read_from(self, scene: SceneResult) -> Value:
         """Return the value of this field in the results of a scene."""
@@ -85,30 +84,25 @@ class SceneField(Generic[Value]):
 @dataclass(frozen=True)
 class Feature:
     """
-    One subject of a report, such as worst phases: analysis, fields of results, section, and rules of selection.
+    One subject of a report, such as worst phases: what computes it, what it adds to the results, where it is shown.
 
-    key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
-    scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
-    --also know it. on_request, of_the_paper, needs: as of a `Selectable`. page_data: what the script of the page reads
-    of a scene, by name. packed_data: further numbers that the script reads. dataset: surfaces.nc with what the
-    analysis found. figures: files for the folder of the figures. clause: what it adds to the statement on measurements,
-    "" for nothing.
+    Everything but the key is optional.
     """
 
-    key: str
-    fields: tuple[ResultField[Any], ...] = ()
-    scene_fields: tuple[SceneField[Any], ...] = ()
-    analysis: Analysis[Any] | None = None
-    section: Section | None = None
-    selectable: bool = True
-    on_request: bool = False
+    key: str  # its name everywhere, and the name of its folder
+    fields: tuple[ResultField[Any], ...] = ()  # what it adds to the results of the study
+    scene_fields: tuple[SceneField[Any], ...] = ()  # what it adds to the results of every scene
+    analysis: Analysis[Any] | None = None  # computes it in a study
+    section: Section | None = None  # shows it on a page
+    selectable: bool = True  # whether --only, --skip and --also know it
+    on_request: bool = False  # rules of its selection, as of `Selectable`: these three
     of_the_paper: bool = False
     needs: str = ""
-    page_data: Callable[[Report, Scene], Mapping[str, Any]] | None = None
-    packed_data: Callable[[Report], bytes] | None = None
-    dataset: Callable[[xr.Dataset, Any], xr.Dataset] | None = None
-    figures: Callable[[Report], Mapping[str, bytes]] | None = None
-    clause: Callable[[Results], str] | None = None
+    page_data: Callable[[Report, Scene], Mapping[str, Any]] | None = None  # what the page's script reads of a scene
+    packed_data: Callable[[Report], bytes] | None = None  # further numbers that the script reads
+    dataset: Callable[[xr.Dataset, Any], xr.Dataset] | None = None  # adds what the analysis found to surfaces.nc
+    figures: Callable[[Report], Mapping[str, bytes]] | None = None  # files for the folder of the figures, by name
+    clause: Callable[[Results], str] | None = None  # what it adds to the statement on measurements, "" for nothing
 
     def __post_init__(self) -> None:
         """Complete the feature's report section with the feature's key, template and fields."""
@@ -127,4 +121,10 @@ class Feature:
     def selectable_entry(self) -> Selectable:
         """Return the name of the feature and the rules by which --only, --skip and --also select it."""
         by_command = bool(self.stored) and self.analysis is None
-        return Selectable(self.key, self.on_request, self.of_the_paper, self.needs, by_command)
+        return Selectable(
+            self.key,
+            on_request=self.on_request,
+            of_the_paper=self.of_the_paper,
+            needs=self.needs,
+            by_command=by_command,
+        )

@@ -21,22 +21,22 @@ ELEMENT_OF_COUNT = {"failures": "failure", "skipped": "skipped"}
 
 @dataclass(frozen=True)
 class JUnitCase:
-    """Test case: acceptance limit of a scene, or models compared without. failures: breaches; skipped: why, or ""."""
+    """Test case: an acceptance limit of a scene, or a pair of models that is compared without a limit."""
 
     name: str
-    failures: Sequence[str] = ()
-    skipped: str = ""
+    failures: Sequence[str] = ()  # sentences on how the limit is broken
+    skipped: str = ""  # why nothing was checked, "" if it was
 
 
 @dataclass(frozen=True)
 class JUnitSuite:
-    """Test suite of one scene: test cases, compute time, s, date and time of the run; said: text for its output."""
+    """Test suite of one scene."""
 
     name: str
-    seconds: float
-    timestamp: str
+    seconds: float  # compute time
+    timestamp: str  # date and time of the run
     cases: Sequence[JUnitCase]
-    said: str = ""
+    said: str = ""  # text for its standard output
 
 
 def format_limits_as_junit(results: Results) -> str:
@@ -45,14 +45,19 @@ def format_limits_as_junit(results: Results) -> str:
 
 
 def _make_suite(scene: SceneResult, began: str) -> JUnitSuite:
-    """Return the test suite of a scene: its acceptance limits, and as skipped the comparisons without a limit."""
+    """Return the test suite of a scene: a case for each acceptance limit, a skipped one for each pair without."""
     cases = []
     for limit in scene.limits:
         key = f"acceptance.{limit.key} = {limit.allowed:g}{' by default' if limit.default else ''}"
         cases.append(JUnitCase(key, limit.broken))
     cases += [JUnitCase(f"acceptance: {pair}", skipped=UNCHECKED_TEXT) for pair in scene.unchecked]
-    seconds, said = sum(model.cost for model in scene.models.values()), "\n".join(h.statement for h in scene.headlines)
-    return JUnitSuite(scene.name, seconds, began, cases, said)
+    return JUnitSuite(
+        name=scene.name,
+        seconds=sum(model.cost for model in scene.models.values()),
+        timestamp=began,
+        cases=cases,
+        said="\n".join(headline.statement for headline in scene.headlines),
+    )
 
 
 def format_junit(scenes: Sequence[JUnitSuite]) -> str:

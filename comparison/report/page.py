@@ -107,13 +107,13 @@ def has_engine(study: Study) -> bool:
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Return whether a bar of model differences, mean or at the largest one's phases, is MIN_DRAWN_BAR or larger."""
+    """Return whether a bar chart is drawn: whether any of its bars is MIN_DRAWN_BAR or larger."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= MIN_DRAWN_BAR for bar in every)
 
 
 def word_measurements(results: Results) -> str:
-    """Return what measurements of a frame validate, then how models meet this study's own; no final full stop."""
+    """Return what measurements of a frame validate, and how the models meet the measurements of this study."""
     return "; ".join([VALIDATED_BRIEFLY, *results.measurement_clauses])
 
 
@@ -132,7 +132,11 @@ def _render_page(
     context: Mapping[str, Any],
     lost: LostParts,
 ) -> str:
-    """Return a page's HTML; a failing part is left out, with a line in `lost`; verifies: it is verification.html."""
+    """
+    Return the HTML of a page, verification.html if `verifies` is true and index.html otherwise.
+
+    A part that raises an error is left out, with a line in `lost`.
+    """
     study, results = report.study, report.results
     sections = [section for section in report.sections if section.verifies == verifies]
     shown = [section for section in sections if section.is_present(results)]

@@ -73,7 +73,7 @@ def _collect_feature_data(report: Report, scene: Scene, say: Callable[[str], obj
 def _read_encodable(
     read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene
 ) -> Mapping[str, Any]:
-    """Return a feature's data of a scene; raise an error if JSON cannot hold them, so that only they are lost."""
+    """Return a feature's data of a scene; raise an error if JSON cannot hold them, so that no other data are lost."""
     data = read(report, scene)
     _format_json(dict(data))
     return data
@@ -98,7 +98,12 @@ def find_crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[l
 
 
 def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
-    """Return two models' texts; by body curves |difference| = uncertainty if both are surfaces, else uncertainty."""
+    """
+    Return the data of a pair of models that the page draws: their names, and the uncertainty of their difference.
+
+    If both models are drawn as surfaces, it is told for each body by the curves on which |difference| = uncertainty;
+    otherwise by its values.
+    """
     surfaces = (
         not scene.recorded
         and _is_drawn_as_surface(report, scene, pair.first)
@@ -118,7 +123,7 @@ def _pair_data(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _is_drawn_as_surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Return whether a model's values are drawn as a surface as they are: all computed, and no user's engine."""
+    """Return whether a model's values are drawn as a surface: it has all phases and is no engine of the user."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 
@@ -127,10 +132,8 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     """
     Return the data of one model of a scene that the page draws.
 
-    phases: per axis. computed: phase pairs that symmetry did not give. surface: whether its values are drawn as one.
-    by body: mu (amplification), error (null for a surface), completed: null or through (a model), certificate
-    (how far it is off, in words), reason (why it is not drawn), difference (whether that may be drawn), mu (null where
-    refused).
+    phases: number per axis. computed: number of phase pairs that symmetry did not give. surface: whether the values are
+    drawn as one. mu, error: by body; the error is null for a surface. completed: by body, see `_completion_data`.
     """
     bodies = range(1, len(scene.bodies) + 1)
     surface = not scene.recorded and _is_drawn_as_surface(report, scene, model)
@@ -153,7 +156,12 @@ def _model_data(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
 
 
 def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
-    """Return a surface interpolated between computed phase pairs, or the reason why not; None if it was not tried."""
+    """
+    Return a surface that is completed between computed phase pairs, or why it is not; None if that was not tried.
+
+    through: model by whose surface it is completed. certificate: how far it is off, in words. reason: why it is not
+    drawn. difference: whether its difference from another model may be drawn. mu: null if it is not drawn.
+    """
     if completion is None:
         return None
     return {

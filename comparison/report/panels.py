@@ -29,12 +29,20 @@ DASH_PATTERNS = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")
 
 
 def make_panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
-    """Return a titled plot in the form that the page's script plot.js reads; label: description for screen readers."""
+    """
+    Return a titled plot in the form that the page's script plot.js reads, which also explains the keys.
+
+    label: description for screen readers. x, y: title, scale and range of an axis. series: the curves.
+    """
     return {"title": title, "plot": {"label": label, "x": x, "y": y, "series": series, **more}}
 
 
 def make_distribution_panels(results: Results, scene: str, quantity: str, unit: str, curves: Any) -> list[Panel]:
-    """Return a plot of the share of phases below each value of a quantity; curves: (model, values) each; [] if none."""
+    """
+    Return a plot of the share of phases below each value of a quantity, in a list that is empty without curves.
+
+    curves: key of a model, and the values of the quantity at CURVE_PROBABILITIES, for each curve.
+    """
     models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = [
         {

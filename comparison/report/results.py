@@ -19,7 +19,7 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.missing_values import MissingValues
 from comparison.surfaces.statements import word_limit_check
 
-SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"  # name of the format of summary.json
+SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"  # states in summary.json what it is
 VERSION: Literal[6] = 6  # version of summary.json: grows when a key changes its meaning or is removed
 
 

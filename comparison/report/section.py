@@ -18,21 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Report:
-    """
-    All data of a report, from which its pages and files are made.
-
-    results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
-    collected, by its key: motions, demands and pictures are not in the results. features: what the report consists of.
-    lost: a line for every part that could not be made.
-    """
+    """All data of a report, from which its pages and files are made."""
 
     study: Study
-    surfaces: xr.Dataset
-    completions: Sequence[Completion]
-    results: Results
-    found: Mapping[str, Any]
-    features: Sequence[Feature]
-    lost: Sequence[str] = ()
+    surfaces: xr.Dataset  # amplification by every model, with the completed surfaces
+    completions: Sequence[Completion]  # surfaces that were completed between computed phase pairs
+    results: Results  # content of summary.json
+    found: Mapping[str, Any]  # what each analysis collected, by key; motions, for instance, are not in the results
+    features: Sequence[Feature]  # subjects that the report consists of
+    lost: Sequence[str] = ()  # a line for every part that could not be made
 
     @property
     def sections(self) -> list[Section]:
@@ -45,23 +39,19 @@ class Section:
     """
     One section of a page of the report: its title, template and the template's variables.
 
-    absent: where the results hold nothing of it, which command makes it. context: what the template reads.
-    folded: whether the reader opens it. verifies: whether it judges the tool or the paper rather than answers the
-    question, and so stands in verification.html. verdict: one line next to the title. lead: one sentence for the first
-    screen, "" for none. template: in comparison/report/templates, unless it is section.html.j2 of the folder. name,
-    shows: key and fields of the feature, which enters them.
+    It stands in verification.html if it judges the tool or the paper (`verifies`), otherwise in index.html.
     """
 
     title: str
-    absent: str = ""
-    context: Callable[[Report], Mapping[str, Any]] = lambda report: {}
-    folded: bool = True
+    absent: str = ""  # shown in its place if the results hold nothing of it: which command makes it
+    context: Callable[[Report], Mapping[str, Any]] = lambda report: {}  # returns the template's variables
+    folded: bool = True  # whether it is closed until the reader opens it
     verifies: bool = False
-    verdict: Callable[[Results], str] | None = None
-    lead: Callable[[Results], str] | None = None
-    template: str = ""
-    name: str = ""
-    shows: tuple[str, ...] = ()
+    verdict: Callable[[Results], str] | None = None  # returns the line next to the title
+    lead: Callable[[Results], str] | None = None  # returns a sentence for the first screen, "" for none
+    template: str = ""  # file in comparison/report/templates; "" for section.html.j2 in the feature's folder
+    name: str = ""  # key of the feature, which the feature enters
+    shows: tuple[str, ...] = ()  # names of the feature's result fields, which the feature enters
 
     def is_present(self, results: Results) -> bool:
         """Return whether the section was selected and the results have a value for any field that it shows."""

@@ -19,19 +19,19 @@ def list_models_in_use(study: Study) -> list[Any]:
 
 
 def _differences_context(report: Report) -> Mapping[str, Any]:
-    """Return variables for the section of differences: those of all scenes, a logarithmic scale for their plot."""
+    """Return variables for the section of differences: the rows of all scenes, and the scale of their plot."""
     rows = [row for scene in report.results.scenes_with("differences") for row in scene.differences]
     return {"rows": rows, "dots": make_log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
 def _grids_context(report: Report) -> Mapping[str, Any]:
-    """Return variables for the section on causes: the numbers of phases per axis on which differences are known."""
+    """Return variables for the section on causes: the numbers of phases per axis of the grids in use."""
     rows = [row for scene in report.results.scenes for row in (*scene.differences, *scene.effects)]
     return {"grids": sorted({grid.phases_per_axis for row in rows for grid in row.grids})}
 
 
 def _costs_context(report: Report) -> Mapping[str, Any]:
-    """Return variables for the section on cost: whether a scene limits the travel; largest compute time, s."""
+    """Return variables for the section on cost: whether any scene limits the travel, and the largest compute time."""
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
         "limited": any(not math.isnan(model.travel_share) for model in outcomes),

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 
 class CodeCheck(NamedTuple):
-    """Test of one code alone: what it is compared with, how well it agrees, what limits that; name, file in tests/."""
+    """Test of one code alone."""
 
-    side: str
-    file: str
-    against: str
-    closeness: str
-    test: str
+    side: str  # which code: "reference" or "engine"
+    file: str  # path in tests/
+    against: str  # what it is compared with
+    closeness: str  # how well it agrees, and what limits that
+    test: str  # name of the test function
 
 
 # Tests of each code, by test file. A row has: what is compared with | agreement and what limits it | name of the test
@@ -74,7 +74,9 @@ engine: comparison/evidence/test_benchmarks.py
   numbers published elsewhere, where friction sticks against the equations with its friction | the error of both |
     test_the_engine_meets_all_published_numbers
 """
-CHECKS = tuple(  # tests of each code alone, one for each row of CHECKS_TABLE
+# Tests of each code alone: a block of CHECKS_TABLE begins with "side: file"; each further row, which may go on in the
+# next line, is one test.
+CHECKS = tuple(
     CodeCheck(*block[:2], *map(str.strip, row.split("|")))
     for block in re.findall(r"^(\w+): (\S+)\n((?:  .*\n)+)", CHECKS_TABLE, re.MULTILINE)
     for row in re.split(r"\n(?=  \S)", block[2].rstrip())

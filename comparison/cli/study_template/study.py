@@ -14,7 +14,7 @@ SCENE = Path(__file__).with_name("building.toml")
 
 
 def main() -> None:
-    """Print the range of amplification, the values by equations and engine at the worst phases, and demands there."""
+    """Print the range of the amplification, and for the worst phases the values by both codes and the demands."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--grid", type=int, default=12, help="phases per axis (default %(default)s)")
     grid = parser.parse_args().grid
@@ -28,9 +28,9 @@ def main() -> None:
         print(f"  body {body}: mu from {low:.3f} to {high:.3f}")
 
     # equations and engine with the same friction law, at the phases where the top's amplification is largest
-    law, pair = 1e-3, phases[worst : worst + 1]  # v_reg, below which friction is linear, m/s; worst phases, rad
-    equations = reference.amplification(scene, pair, regularization=law)
-    engine = multibody.amplification(scene, pair, regularization=law)
+    v_reg, pair = 1e-3, phases[worst : worst + 1]  # speed below which friction is linear, m/s; worst phases, rad
+    equations = reference.amplification(scene, pair, regularization=v_reg)
+    engine = multibody.amplification(scene, pair, regularization=v_reg)
     print(f"phases {pair[0].round(3).tolist()} rad, like for like:")
     for body in range(len(scene.bodies)):
         print(

@@ -10,5 +10,5 @@ SCENE = Path(__file__).with_name("building.toml")
 
 
 def test_the_equations_and_the_engine_agree() -> None:
-    """Relative differences of amplification beyond both errors, at equal geometry and friction law, are in limits."""
+    """With equal geometry and friction law, amplifications differ by no more than the limits beyond both errors."""
     assert_consistent(SCENE, like_for_like=1e-3, like_for_like_maximum=2e-3, grid=2)

@@ -36,22 +36,26 @@ TASK_TIME_LIMIT = 300.0  # s, processor time after which a task is ended
 
 @dataclass(frozen=True)
 class SideNumbers:
-    """Numbers for a benchmark by the equations or the engine, with errors, and how the computed motion ended."""
+    """Numbers for a benchmark as one side, the equations or the engine, computes them."""
 
-    values: list[float]
-    errors: list[float]
-    ending: str
-    seconds: float
+    values: list[float]  # in the units of the published numbers; empty if the motion ended early
+    errors: list[float]  # estimated absolute errors of the values
+    ending: str  # how the computed motion ended
+    seconds: float  # s, processor time
 
 
 @dataclass(frozen=True)
 class BenchmarkTable:
-    """Benchmarks and the tasks that solve each: by equations, by equations with the engine's friction, by engine."""
+    """
+    Benchmarks, each of which is solved by three sides.
+
+    The sides are the equations, the equations with the engine's friction law ("smoothed"), and the engine.
+    """
 
     cases: Sequence[BenchmarkCase]
 
     def tasks(self) -> list[Task]:
-        """Return a task for each benchmark and way to solve it: equations, these with the engine's friction, engine."""
+        """Return a task for each benchmark and side."""
         return [self._task(case, side) for case in self.cases for side in MODEL_OF_SIDE]
 
     def collect(self, results: TaskResults) -> Benchmarks:
@@ -60,18 +64,23 @@ class BenchmarkTable:
             {side: results.value(self._task(case, side), _answer_of_failure) for side in MODEL_OF_SIDE}
             for case in self.cases
         ]
-        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
+        return Benchmarks([_make_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], run={})
 
     def _task(self, case: BenchmarkCase, side: str) -> Task:
-        """Return the task that solves a benchmark by `side`: equations, these with the engine's friction, or engine."""
-        seconds = SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0)
+        """Return the task that solves a benchmark by one side."""
         return Task(
-            solve_side, (case, side), "benchmarks", seconds, case.scene, side != ENGINE, timeout=TASK_TIME_LIMIT
+            solve_side,
+            (case, side),
+            stage="benchmarks",
+            seconds=SECONDS_OF_SIDE[side] * max(1.0, case.scene.duration / 12.0),
+            about=case.scene,
+            needs_compiled_reference=side != ENGINE,
+            timeout=TASK_TIME_LIMIT,
         )
 
 
 def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
-    """In a worker, solve a benchmark by equations or engine (`side`); return numbers to compare with published ones."""
+    """Solve a benchmark by one side; return the numbers to compare with those published. Runs in a worker process."""
     case, side = benchmark_and_side
     settings = dict(MODEL_OF_SIDE[side].settings)
     if side != EQUATIONS:
@@ -84,13 +93,16 @@ def solve_side(benchmark_and_side: tuple[BenchmarkCase, str]) -> SideNumbers:
     clock = time.process_time()
     trajectory = import_function(MODEL_OF_SIDE[side].trajectory)
     motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCE_OF_SIDE[side], **settings)
-    return SideNumbers(*_read_numbers(case.reading, motion), str(motion.status), time.process_time() - clock)
+    values, errors = _read_numbers(case.reading, motion)
+    return SideNumbers(values=values, errors=errors, ending=str(motion.status), seconds=time.process_time() - clock)
 
 
 def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
     """Return the numbers read from a motion and their estimated absolute errors; two empty lists if it ended early."""
     if motion.status not in FULL_LENGTH_OUTCOMES or len(motion.time) < 2:
         return [], []
+    # The error of a number has two parts: that of the solution, from coarser solutions, and that of reading it from
+    # samples, which is a third of the change by leaving out every second sample, as it is of second order.
     values, accuracy = reading.read(motion), motion.accuracy
     others = [] if accuracy is None else [reading.read(each) for each in (halve_samples(motion), *accuracy.coarser)]
     # no error estimate: a coarser solution has another number of swings, so that numbers do not pair
@@ -101,14 +113,14 @@ def _read_numbers(reading: MotionReading, motion: Trajectory) -> tuple[list[floa
 
 
 def halve_samples(motion: Trajectory) -> Trajectory:
-    """Return a motion with every second sample: numbers read from it have four times the error, at kinks even more."""
+    """Return a motion with every second sample, from which numbers are read with about four times the error."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
     return replace(motion, **arrays)
 
 
 def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> Benchmark:
-    """Return published numbers beside those by equations, equations with the engine's friction, and the engine."""
+    """Return a benchmark's published numbers beside those that the sides in `answers` computed."""
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -123,7 +135,7 @@ def _make_benchmark(case: BenchmarkCase, answers: Mapping[str, SideNumbers]) -> 
 
 
 def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
-    """Return published number `place` beside those by equations and engine; without value if a motion gave too few."""
+    """Return the published number at index `place` beside those computed; none if a motion gave too few numbers."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
     for side, answer in answers.items():
@@ -131,22 +143,28 @@ def _make_row(case: BenchmarkCase, place: int, answers: Mapping[str, SideNumbers
             numbers[side] = answer.values[place], answer.errors[place]
 
     def read_number(side: str) -> SideNumber:
-        """Return the number by equations or engine, its verdict and, if that is "not met", an explanation."""
+        """Return the number by one side with its verdict and, if that is "not met", an explanation."""
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
-        return SideNumber(value, error, verdict, explain_deviation(side) if verdict == NOT_MET else "")
+        explanation = explain_deviation(side) if verdict == NOT_MET else ""
+        return SideNumber(value=value, error=error, verdict=verdict, explanation=explanation)
 
-    def explain_deviation(code: str) -> str:
-        """Return why a number misses the published one: publication's model differs, regularized friction, or ""."""
+    def explain_deviation(side: str) -> str:
+        """
+        Return why the number by one side misses the published one, "" if that is not known.
+
+        Either the source has another model, or the engine's friction law makes the difference: the equations with this
+        law then give the same number.
+        """
         if case.difference:
             return MODEL_EXPLANATION
-        (value, error), (smoothed, smoothed_error) = numbers[code], numbers[SMOOTHED]
+        (value, error), (smoothed, smoothed_error) = numbers[side], numbers[SMOOTHED]
         same = replace(row, published=smoothed, uncertainty=smoothed_error)
-        return FRICTION_EXPLANATION if code != EQUATIONS and same.judge(value, error) == MET else ""
+        return FRICTION_EXPLANATION if side != EQUATIONS and same.judge(value, error) == MET else ""
 
     return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
 def _answer_of_failure(benchmark_and_side: tuple[BenchmarkCase, str], failed: TaskResult) -> SideNumbers:
-    """Return, for a benchmark that equations or engine failed to compute, no numbers and the reason."""
-    return SideNumbers([], [], failed.reason, 0.0)
+    """Return no numbers and the reason, for a benchmark that one side failed to compute."""
+    return SideNumbers(values=[], errors=[], ending=failed.reason, seconds=0.0)

@@ -31,7 +31,7 @@ RAMP_EFFECT = 2e-7  # m, change of displacement because the pulse falls to zero 
 
 @dataclass(frozen=True)
 class MotionReading:
-    """Reader of one number or several from a motion: `factor` times `function(motion, **arguments)`."""
+    """How the numbers of a benchmark are read from a motion: as `factor` times `function(motion, **arguments)`."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)
@@ -85,7 +85,8 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
-    """Return benchmarks of the friction power of a harmonically shaken block: always sliding, ..., stuck (SDND104)."""
+    """Return benchmarks of the wear power (contact force times sliding speed) of a shaken block (SDND104)."""
+    # m/s^2, amplitude of the shaking; W, published power; half of its last digit
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
     return [
@@ -93,8 +94,11 @@ def _wear_power_cases() -> list[BenchmarkCase]:
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
-            published=[PublishedNumber("power of friction", "W", power, digits)],
-            reading=MotionReading(readings.compute_path_length, {"begin": 4.0, "end": 12.0}, BLOCK_WEIGHT / 8.0),
+            published=[PublishedNumber(quantity="power of friction", unit="W", published=power, uncertainty=digits)],
+            # The contact force, which is the weight, times the path that the block slides, over the time of 8 s
+            reading=MotionReading(
+                readings.compute_path_length, arguments={"begin": 4.0, "end": 12.0}, factor=BLOCK_WEIGHT / 8.0
+            ),
             scene=load_shipped_scene("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
         )
@@ -109,7 +113,7 @@ def _release_case() -> BenchmarkCase:
         source="code_aster, test SDND100 (V5.01.100): closed form",
         evidence="turning points, and rest at the end",
         published=[
-            PublishedNumber(f"turning point {number}", "mm", place, 0.0)
+            PublishedNumber(quantity=f"turning point {number}", unit="mm", published=place, uncertainty=0.0)
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
         reading=MotionReading(readings.find_turning_points, factor=1e3),
@@ -121,18 +125,21 @@ def _release_case() -> BenchmarkCase:
 
 def _coulomb_damping_case() -> BenchmarkCase:
     """Return the benchmark of a free vibration with Coulomb damping (ANSYS VM73), scaled in time."""
-    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # frequency at 30 lb/in and 10 lb, divided by the scene's 0.1 rad/s
+    # Factor by which the scene is slower: the published natural frequency, of 30 lb/in and 10 lb, over 0.1 rad/s
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0
     times = (0.09, 0.102, 0.183)
     return BenchmarkCase(
         title="ANSYS VM73: free vibration with Coulomb damping",
         source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
         evidence="the motion between stops, at given instants",
         published=[
-            PublishedNumber(f"place at {time:g} s", "in", value, 5e-6)
+            PublishedNumber(quantity=f"place at {time:g} s", unit="in", published=value, uncertainty=5e-6)
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
         reading=MotionReading(
-            readings.interpolate_positions, {"times": [stretch * time for time in times]}, 1.0 / INCH
+            readings.interpolate_positions,
+            arguments={"times": [stretch * time for time in times]},
+            factor=1.0 / INCH,
         ),
         scene=load_shipped_scene("vm73"),
         start=((-INCH, 0.0),),
@@ -148,9 +155,14 @@ def _den_hartog_case() -> BenchmarkCase:
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
-        published=[PublishedNumber("amplitude over static one", "", 1.535602, 5e-7)],
-        reading=MotionReading(readings.compute_half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
+        published=[
+            PublishedNumber(quantity="amplitude over static one", unit="", published=1.535602, uncertainty=5e-7)
+        ],
+        reading=MotionReading(  # in the last of six periods
+            readings.compute_half_range, arguments={"begin": scene.duration * 5.0 / 6.0}, factor=1.0 / unit
+        ),
         scene=scene,
+        # The motion starts at a turning point of the steady oscillation, whose phase and amplitude the closed form has.
         phases=(0.18581959993316782, 0.0),
         start=((1.5356018092808652 * unit, 0.0),),
         regularization=1e-7,
@@ -165,8 +177,15 @@ def _harmonic_block_case() -> BenchmarkCase:
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
-        published=[PublishedNumber("amplitude over ground's", "", round(amplitude, 6), 5e-7)],
-        reading=MotionReading(readings.compute_half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
+        published=[
+            PublishedNumber(
+                quantity="amplitude over ground's", unit="", published=round(amplitude, 6), uncertainty=5e-7
+            )
+        ],
+        # The displacement of the ground has an amplitude of 2.5 m/s^2 / (2 pi rad/s)^2.
+        reading=MotionReading(
+            readings.compute_half_range, arguments={"begin": 11.0}, factor=(2.0 * math.pi) ** 2 / 2.5
+        ),
         scene=load_shipped_scene("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
     )
@@ -178,8 +197,8 @@ def _pulse_case() -> BenchmarkCase:
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
-        published=[PublishedNumber("displacement", "m", 0.75, RAMP_EFFECT)],
-        reading=MotionReading(readings.interpolate_positions, {"times": [3.0]}),
+        published=[PublishedNumber(quantity="displacement", unit="m", published=0.75, uncertainty=RAMP_EFFECT)],
+        reading=MotionReading(readings.interpolate_positions, arguments={"times": [3.0]}),
         scene=load_shipped_scene("newmark"),
     )
 
@@ -193,8 +212,8 @@ def _linear_cases() -> list[BenchmarkCase]:
             source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
             evidence="stiffness of the isolator, mass and link",
             published=[
-                PublishedNumber("isolation period", "s", 2.0242, 5e-5),
-                PublishedNumber("structural period", "s", 0.2500, 5e-5),
+                PublishedNumber(quantity="isolation period", unit="s", published=2.0242, uncertainty=5e-5),
+                PublishedNumber(quantity="structural period", unit="s", published=0.2500, uncertainty=5e-5),
             ],
             reading=MotionReading(readings.compute_natural_periods),
             scene=load_shipped_scene("frame"),
@@ -205,7 +224,7 @@ def _linear_cases() -> list[BenchmarkCase]:
             source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
             evidence="chain of links above a platform that friction holds",
             published=[
-                PublishedNumber(f"natural period {number}", "s", period, 5e-5)
+                PublishedNumber(quantity=f"natural period {number}", unit="s", published=period, uncertainty=5e-5)
                 for number, period in enumerate(stories, start=1)
             ],
             reading=MotionReading(readings.compute_natural_periods),
@@ -217,7 +236,9 @@ def _linear_cases() -> list[BenchmarkCase]:
             title="Pendulum released at 60°",
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
-            published=[PublishedNumber("period over small one's", "", 1.073182, 5e-7)],
+            published=[
+                PublishedNumber(quantity="period over small one's", unit="", published=1.073182, uncertainty=5e-7)
+            ],
             reading=MotionReading(readings.compute_mean_period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
             scene=load_shipped_scene("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),
@@ -274,7 +295,10 @@ def load_mastodon_case(path: Path) -> BenchmarkCase:
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
-        published=[PublishedNumber(name, "mm", value, READING_ERROR) for name, value in zip(names, MASTODON_EXTREMES)],
+        published=[
+            PublishedNumber(quantity=name, unit="mm", published=value, uncertainty=READING_ERROR)
+            for name, value in zip(names, MASTODON_EXTREMES)
+        ],
         reading=MotionReading(readings.find_position_ranges, factor=1e3),
         scene=scene,
         regularization=DEFAULT_V_REG,

@@ -91,7 +91,11 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
 
 
 def _choose_cases(only: str, mastodon_input: Path | None) -> list[BenchmarkCase]:
-    """Return the benchmarks with `only` in their name, MASTODON's if its input is given. Raises SceneError if none."""
+    """
+    Return the benchmarks whose name contains `only`; that of MASTODON is among them if the file of its input is given.
+
+    Raises SceneError if none is left.
+    """
     known = list_cases() + ([] if mastodon_input is None else [load_mastodon_case(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]
     if not chosen:

@@ -12,15 +12,17 @@ from comparison.report.section import Section
 from comparison.verdicts import STYLE_CLASSES
 
 # Field of summary.json with the benchmarks, if a command left their file next to the report
-FOUND = make_stored_field(STORED, "benchmarks", "numbers published elsewhere, compared with what both sides compute")
+FOUND = make_stored_field(
+    STORED, name="benchmarks", meaning="numbers published elsewhere, compared with what both sides compute"
+)
 # Registration of this section of the report with the program: its field of summary.json and its content
 FEATURE = Feature(
     "benchmarks",
-    (FOUND,),
+    fields=(FOUND,),
     section=Section(
         "External benchmarks",
-        STORED.word_how_to_make(),
-        lambda report: {
+        absent=STORED.word_how_to_make(),
+        context=lambda report: {
             "benchmark_sentences": word_explanations,
             "benchmark_colors": STYLE_CLASSES,
             "stated": word_published_number,

@@ -26,6 +26,8 @@ def interpolate_positions(motion: Trajectory, times: ArrayLike) -> Array:
 
 def find_turning_points(motion: Trajectory) -> Array:
     """Return the positions, m, at which the platform's velocity along x changes sign, and the end of its last swing."""
+    # A swing is a run of samples that move to one side, apart from creep. The turning point is sought between its last
+    # sample and the first of the next swing.
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > CREEP_SPEED_SHARE * np.abs(speed).max())
     sign = np.sign(speed[moving])
@@ -78,7 +80,7 @@ def compute_natural_periods(motion: Trajectory) -> Array:
 
 
 def _dense_instants(motion: Trajectory, begin: float, end: float) -> Array:
-    """Return times from `begin` to `end`, s: samples of the motion, each interval divided in READING_PARTS."""
+    """Return instants from `begin` to `end`, s, READING_PARTS for every interval between samples of the motion."""
     inner = motion.time[(motion.time > begin) & (motion.time < end)]
     knots = np.concatenate([[begin], inner, [end]])
     parts = np.arange(READING_PARTS) / READING_PARTS

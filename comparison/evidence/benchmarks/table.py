@@ -67,12 +67,12 @@ class PublishedNumber:
         return judge_error(value - self.published, error + self.uncertainty + VALUE_ROUNDING * abs(value))
 
     def error_of(self, side: str) -> float | None:
-        """Return the number by equations or engine (`side`) minus the published one; None without a value."""
+        """Return the number by one side, equations or engine, minus the published one; None without a value."""
         value = self.numbers[side].value
         return None if value is None else value - self.published
 
     def word(self, side: str, explained: bool = False) -> str:
-        """Return in words the verdict on the number by `side`, equations or engine; explained: add the explanation."""
+        """Return in words the verdict on the number by one side, with the explanation if that is asked for."""
         number = self.numbers[side]
         why = (number.explanation or "not explained") if explained else ""
         return word_verdict(number.verdict, self.error_of(side), self.published, self.unit, why)
@@ -115,7 +115,7 @@ class Benchmarks:
         return {why: found.count(why) for why in (FRICTION_EXPLANATION, MODEL_EXPLANATION, "")}
 
     def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, SideNumber]]:
-        """Yield every number by equations or engine: benchmark, published number, which of the two, and the number."""
+        """Yield every computed number, after its benchmark, the published number, and the side that computed it."""
         for each in self.benchmarks:
             for row in each.rows:
                 for side in (EQUATIONS, ENGINE):
@@ -123,7 +123,7 @@ class Benchmarks:
 
 
 def verdict_line(table: Benchmarks) -> str:
-    """Return a line on all benchmarks: number of each verdict, and the largest relative error not met."""
+    """Return a line that counts the verdicts of all benchmarks, and names the largest relative error not met."""
     off = [
         (row.error_of(side) or 0.0, row.published, f"{each.name}, {row.quantity}, {side}")
         for each, row, side, number in table.iterate_numbers()
@@ -132,8 +132,9 @@ def verdict_line(table: Benchmarks) -> str:
     return word_counts_and_largest(table.counts(), off, "published number")
 
 
-# File with the table of benchmarks: its name, type, what it holds in words, and the command that writes it
-STORED = StoredFile(TABLE_FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
+STORED = StoredFile(
+    name=TABLE_FILE, kind=Benchmarks, what="a table of benchmarks", command="phase-resonance benchmarks"
+)
 
 
 MAX_DIGITS = 7  # largest number of significant digits printed

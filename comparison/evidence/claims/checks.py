@@ -93,7 +93,11 @@ def _list_curvatures(case: Evidence) -> list[tuple[int, bool, SharpestCurvature]
 
 
 def _describe_curvatures(case: Evidence) -> str:
-    """Word where each amplification is curved most: fold, jump, smooth; n of its second difference ~ (phase step)^n."""
+    """
+    Return in words what each body's amplification has where it is curved most: "smooth", "fold" or "jump".
+
+    The number in parentheses is the power of the phase step h with which its second difference falls there.
+    """
     words = (
         f"mu_{body} {'flat' if flat else f'{bend.kind} (h^{bend.exponent:.1f})'}"
         for body, flat, bend in _list_curvatures(case)
@@ -142,7 +146,7 @@ def count_peaks(case: Evidence, wanted: counting.PeakCounts) -> StatementVerdict
     }
     holds = {name: at_shares[0] == wanted for name, at_shares in counts.items()}
     words = []
-    for name, at_shares in counts.items():  # text: count at prominence SHARE, and its range over the others
+    for name, at_shares in counts.items():  # say the count with SHARE, and in parentheses from where to where it varies
         spans = [f" ({min(column)} to {max(column)})" if len({*column}) > 1 else "" for column in zip(*at_shares)]
         words.append(f"{name} " + " and ".join(f"{count}{span}" for count, span in zip(at_shares[0], spans)))
     only = "only as drawn: " if any(holds.values()) and not holds["periodic"] else ""
@@ -153,7 +157,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Return the verdict whether body 2's amplification has several peaks and valleys, and more than body 1's."""
 
     def counts(share: float) -> list[counting.PeakCounts]:
-        """Return peak and valley counts of bodies 1 and 2 over the phases; share: least prominence / surface range."""
+        """Return the peaks and valleys of bodies 1 and 2 that have at least this share of the range as prominence."""
         return [counting.count_periodic_peaks_and_valleys(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:

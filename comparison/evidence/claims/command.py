@@ -38,7 +38,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
 
 
 def print_claims(console: Console, table: ClaimTable) -> None:
-    """Print verdicts for both peaks, any slip speed or above 1 mm/s; then reasons, and why a statement cannot hold."""
+    """Print the verdicts in both readings of (5.1), then each statement's rule and reasons, and why it cannot hold."""
     grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
     for each in table.statements:
         grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))
@@ -50,7 +50,7 @@ def print_claims(console: Console, table: ClaimTable) -> None:
 
 
 def print_ratios(console: Console, study: Study) -> None:
-    """Print the ratios of upper bodies' amplitudes to the platform's, by the equations of the links (4.4) alone."""
+    """Print the ratio of each upper body's amplitude to the platform's, by the equations of the links (4.4) alone."""
     console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
     grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
     for scene in study.scenes:

@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """Findings by the paper's small-vibration equations (4.3)-(4.4); peaks count at any slip speed or above cutoff."""
+    """What the checks know of a scene by the paper's small equations (4.3)-(4.4), in one reading of the peak (5.1)."""
 
     # Amplification (n, n, N): n phases alpha1, n phases alpha2, N bodies; NaN if unknown
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
@@ -37,7 +37,7 @@ class Evidence:
     case: str = ""  # name of the scene in STATEMENT_CASES
 
     def flat(self, body: int) -> bool:
-        """Return whether a body's amplification varies over phases within its errors, or too little for resonance."""
+        """Return whether a body's amplification varies by no more than its errors, or too little for a resonance."""
         mu = self.mu[..., body - 1]
         return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT_RANGE_RATIO * abs(float(mu.mean()))))
 
@@ -50,9 +50,9 @@ class Evidence:
 @dataclass(frozen=True)
 class CaseInReading:
     """
-    One scene to compute with one definition of the peak acceleration (5.1), on a grid of `grid` phases per axis.
+    One scene in one reading of (5.1), that is one definition of the peak acceleration, on `grid` phases per axis.
 
-    known: its surfaces, where the study has them; otherwise they are computed.
+    known: its amplification, if the study has computed it already.
     """
 
     case: str
@@ -62,7 +62,11 @@ class CaseInReading:
 
 
 def gather_evidence(question: CaseInReading) -> Evidence:
-    """Compute, in a worker process, a scene's amplification, its sharpest curvatures, and facts of the motions."""
+    """
+    Compute what the checks need to know of a scene in one reading of (5.1). Runs inside a worker process.
+
+    A scene of a platform alone has only its amplification: it is correlated with others.
+    """
     scene, cutoff = STATEMENT_CASES[question.case](), question.reading.cutoff
 
     def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
@@ -72,7 +76,8 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     surfaces = question.known
     if surfaces is None:
         mu, error, statuses = complete_surface(scene, question.grid, solve)
-        surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses), case=question.case)
+        largest = float(np.nanmax(error, initial=0.0))
+        surfaces = Evidence(mu=mu, error=largest, statuses=tuple(statuses), case=question.case)
     if not surfaces.complete or len(scene.bodies) == 1:
         return surfaces
 
@@ -99,7 +104,12 @@ def make_failed_evidence(question: CaseInReading, failed: TaskResult) -> Evidenc
 
 
 def _measure_motions(scene: Scene) -> tuple[tuple[float, ...], float]:
-    """Return, at MOTION_PHASES, relative |x - y| of each body, and the platform's largest (displacement / rho)^2."""
+    """
+    Return two facts of the displacements at MOTION_PHASES.
+
+    They are each body's largest |x - y|, over its largest displacement, and the platform's largest
+    (displacement / rho)^2.
+    """
     apart, swing = np.zeros(len(scene.bodies)), 0.0
     for phase in MOTION_PHASES:
         place = reference.trajectory(scene, phase, equations="small").position[..., :2]

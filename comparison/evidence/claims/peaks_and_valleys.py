@@ -26,10 +26,10 @@ MIN_SHARE, MAX_SHARE = 0.2, 0.4
 
 @dataclass(frozen=True)
 class PeakBasins:
-    """Peaks of a surface (row, column), highest first; for each grid point, index of the peak that ascent reaches."""
+    """Peaks of a surface on a grid, and the basin of each: the points from which ascent leads to it."""
 
-    tops: Sequence[tuple[int, int]]
-    regions: NDArray[np.int_]
+    tops: Sequence[tuple[int, int]]  # row and column of each peak, the highest first
+    regions: NDArray[np.int_]  # for every grid point, index in `tops` of the peak that ascent reaches
 
 
 class PeakCounts(NamedTuple):
@@ -54,10 +54,10 @@ def count_drawn_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = 
 
 
 def count_profile_peaks_and_valleys(mu: Array, error: float = 0.0, share: float = SHARE) -> PeakCounts:
-    """Return peak and valley counts of the mean amplification as a function of alpha1 - alpha2, -2 pi to 2 pi."""
+    """Return the numbers of peaks and valleys of the mean amplification over alpha1 - alpha2, from -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
-    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
+    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])  # mean along the k-th diagonal
     if np.ptp(along) < share * np.ptp(mu):
         return PeakCounts(0, 0)
     return _count_bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
@@ -71,7 +71,15 @@ def _count_bounded(mu: Array, error: float, share: float) -> PeakCounts:
 
 
 def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> PeakBasins:
-    """Return the peaks of a surface mu (n, m), none if it varies by at most twice `error`; closed: it is periodic."""
+    """
+    Return the peaks of a surface mu (n, m), none if it varies by at most twice `error`; closed: it is periodic.
+
+    Arguments and definition of a peak: as of `count_periodic_peaks_and_valleys` and in the module's docstring.
+    """
+    # The points are taken from the highest to the lowest, as islands rise from a falling sea. A point without a higher
+    # neighbor is a new island, with a maximum as its top. Where a point joins islands, the lower ones end: the
+    # prominence of their maxima is their height above this point, the saddle. Maxima of too little prominence are
+    # merged into that of the highest island.
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
         return PeakBasins([], np.full(mu.shape, -1))
@@ -110,7 +118,7 @@ def find_peak_basins(mu: Array, error: float = 0.0, share: float = SHARE, closed
 
 
 def _root_of_node(parent: list[int], node: int) -> int:
-    """Return the root of a node in a union-find forest (parent: index of each node's parent); shorten the path."""
+    """Return the root of a node in a union-find forest, given each node's parent; shorten the path to it."""
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

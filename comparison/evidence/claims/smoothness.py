@@ -48,7 +48,15 @@ class SharpestCurvature:
 
 
 def find_sharpest_curvatures(mu: Array, solve: Callable[[Array], Array]) -> tuple[SharpestCurvature, ...]:
-    """Return where each body's amplification mu (n, n, N) is least smooth; solve: mu (M, N) at phases (M, 2), rad."""
+    """
+    Return, for each body, where its amplification is least smooth.
+
+    mu: amplification on a grid, (n phases alpha1, n phases alpha2, N bodies). solve: returns the amplification, (M, N),
+    at M phase pairs, (M, 2), rad.
+    """
+    # Every start is a body, a grid point and a direction (`way`). `values` has the amplification at the center and one
+    # step to either side. Each round halves the step, computes the two new points between the three, and moves to that
+    # of the three inner points where the second difference is largest.
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest_places(mu[..., body])]
@@ -83,6 +91,7 @@ def _second_differences(values: Array) -> Array:
 
 def _sharpest_places(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
     """Return the grid indices of the largest second differences, no two adjacent, with the direction of each."""
+    # Divided by the squared length of the step, so that a diagonal direction compares with the others
     size = np.array(
         [
             np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way)

@@ -34,7 +34,7 @@ CORRELATION_STRIDE = 2  # Surfaces that are only correlated with others are comp
 
 @result
 class Statement:
-    """Statement of the paper about its figures, with a verdict for each definition of the peak acceleration (5.1)."""
+    """Statement of the paper about its figures, with a verdict in each reading of (5.1), the peak's definition."""
 
     figure: Annotated[str, "figure of the paper"]
     says: Annotated[str, "what the paper says"]
@@ -44,9 +44,7 @@ class Statement:
 
     @property
     def reasons(self) -> list[str]:
-        """
-        Return the verdicts' reasons: one if both definitions of peak acceleration (5.1) have the same, else two texts.
-        """
+        """Return the reasons of the verdicts: one text if both readings of (5.1) have the same reason, else two."""
         texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
         same = len({*texts.values()}) == 1
         return [*{*texts.values()}] if same else [f"{name}: {text}" for name, text in texts.items()]
@@ -54,7 +52,7 @@ class Statement:
 
 @result
 class ClaimTable:
-    """Table of the paper's statements on its figures, with verdicts for both definitions of peak acceleration (5.1)."""
+    """Table of the paper's statements on its figures, with verdicts in both readings of (5.1)."""
 
     grid: Annotated[int, "phases per axis"]
     statements: Annotated[tuple[Statement, ...], "in the order of the figures"]
@@ -62,7 +60,7 @@ class ClaimTable:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def counts(self) -> dict[str, dict[Verdict, int]]:
-        """Return numbers of statements met, not met, not compared, by name of peak acceleration definition (5.1)."""
+        """Return the number of statements met, not met and not compared, by name of the reading of (5.1)."""
         return {
             reading.name: count_verdicts(each.verdicts[reading.name].verdict for each in self.statements)
             for reading in READINGS
@@ -95,7 +93,7 @@ def word_claims(table: ClaimTable) -> str:
 
 
 def count_met(table: ClaimTable) -> str:
-    """Return a clause: numbers of statements met and not compared, by definition of the peak acceleration (5.1)."""
+    """Return a clause that counts the statements that are met, and those not compared, in each reading of (5.1)."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
     uncompared = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
     rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in uncompared.items())
@@ -104,14 +102,18 @@ def count_met(table: ClaimTable) -> str:
 
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
-    """Check of the paper's statements for both kinds of peak acceleration (5.1), on study amplification if possible."""
+    """
+    Check of the paper's statements in both readings of (5.1), the two definitions of the peak acceleration.
+
+    The amplification is that of the study where this has it; elsewhere it is computed on `grid` phases per axis.
+    """
 
     key, stage, needs_surfaces = "claims", "claims", True
     seconds = 0.3
     grid: int = CLAIMS_GRID
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Return tasks for evidence by scene and kind of peak acceleration (5.1); none if a paper scene is missing."""
+        """Return the tasks that gather evidence; none unless the study has every scene of the paper."""
         return list(self._tasks(study, surfaces).values())
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
@@ -131,13 +133,13 @@ class Claims(Analysis[ClaimTable]):
         )
 
     def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
-        """Return tasks that gather evidence, by scene and kind of peak acceleration (5.1): both if they differ."""
+        """Return the tasks that gather evidence, by scene and reading of (5.1); one reading if both agree."""
         if not has_every_paper_scene(study):
             return {}
         tasks = {}
         for case, make in STATEMENT_CASES.items():
-            nested = len(make().bodies) == 1 and self.grid % CORRELATION_STRIDE == 0
-            grid = self.grid // CORRELATION_STRIDE if nested else self.grid
+            only_correlated = len(make().bodies) == 1 and self.grid % CORRELATION_STRIDE == 0
+            grid = self.grid // CORRELATION_STRIDE if only_correlated else self.grid
             for reading in dict.fromkeys(effective_reading(each, make()) for each in READINGS):
                 question = CaseInReading(
                     case, reading, grid, select_study_surfaces(study, surfaces, case, reading, grid)
@@ -150,7 +152,7 @@ def select_study_surfaces(
     study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
 ) -> Evidence | None:
     """
-    Return the study's amplification of a scene, `grid` phases per axis, by one definition of peak acceleration (5.1).
+    Return the study's amplification of a scene (`case`) in one reading of (5.1), on `grid` phases per axis.
 
     None if the study lacks the reading's model or these phases, or if its scene differs from the printed one.
     """
@@ -167,7 +169,7 @@ def select_study_surfaces(
         for name in ("mu", "error")
     )
     statuses = np.unique(select_values(surfaces, "status", case, model)[every, every].astype(str)).tolist()
-    return Evidence(mu.copy(), float(np.nanmax(error, initial=0.0)), tuple(statuses), case=case)
+    return Evidence(mu=mu.copy(), error=float(np.nanmax(error, initial=0.0)), statuses=tuple(statuses), case=case)
 
 
 def has_every_paper_scene(study: Study) -> bool:
@@ -176,9 +178,12 @@ def has_every_paper_scene(study: Study) -> bool:
 
 
 def make_claim_table(verdicts: Mapping[str, list[StatementVerdict]], grid: int = CLAIMS_GRID) -> ClaimTable:
-    """Return the table of all statements; verdicts: in their order, by name of peak acceleration's definition (5.1)."""
+    """Return the table of all statements; verdicts: in the order of CLAIMS, by name of the reading of (5.1)."""
     rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
     return ClaimTable(
-        grid,
-        tuple(Statement(c.figure, c.says, c.rule, c.cannot, row) for c, row in zip(CLAIMS, rows)),
+        grid=grid,
+        statements=tuple(
+            Statement(figure=claim.figure, says=claim.says, rule=claim.rule, cannot=claim.cannot, verdicts=row)
+            for claim, row in zip(CLAIMS, rows)
+        ),
     )

@@ -1,11 +1,14 @@
 """
 Limits of the friction law and the contact: regularization to zero, contact stiffness to infinity.
 
-Friction linear below v_reg against the set-valued law read at rest and above v_c = v_reg: the same motion but for what
-happens below that speed, so that the difference must vanish with it. The supremum also holds what lies below every
-v_reg and is approached, if at all, like a power so low that no v_reg in use is small enough. The engine's contact,
-pressed in by the weight by a share p of rho, that is of stiffness 1/p, against the rigid one under the same law; at a
-constant step, and another of half its length for the error bar, so that nothing but the stiffness changes.
+Friction: a law that is linear below the speed v_reg is compared with the set-valued law, under which the platform may
+stick. The peaks of the latter count at rest and above v_c = v_reg. Both motions are the same but for what happens below
+v_reg, so that the difference must vanish with it. The supremum also counts what happens below every v_reg. It is
+approached, if at all, like a power so low that no v_reg in use is small enough.
+
+Contact: the engine's elastic contact is compared with a rigid one under the same friction law. The weight presses it in
+by a share p of rho, so that its stiffness is like 1/p. The step is constant, so that nothing but the stiffness changes;
+a second run with half the step gives the error bar.
 """
 
 import math
@@ -27,7 +30,8 @@ from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
-RelativeDifferences = tuple[Array, Array]  # relative differences of amplification, errors: (phases, parameter, body)
+# Relative differences of amplification, and their errors; axes of both arrays: phase pair, parameter value, body
+RelativeDifferences = tuple[Array, Array]
 
 # rad, phase pairs at which the reference equations are solved
 EQUATION_PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])
@@ -44,18 +48,19 @@ MAX_STEPS = 20_000  # largest number of constant steps of one motion; a second r
 EQUATION_TOLERANCE = 1e-7  # relative error asked of the amplification by the reference equations
 # Newton's method in Exudyn's steps: tolerance of the residual relative to the first one, and in units of the weight
 NEWTON_TOLERANCE, RESIDUAL_TOLERANCE = 1e-8, 1e-12
-# Estimated error after halving the steps / change of amplification by it, which is 0.5 to 1 times the error before
+# The error that is left after the steps were halved is taken as this times the change that halving them made.
 STEP_ERROR_FACTOR = 1.5  # 1 is enough for errors that halve with the steps
 
 
 def _compare_at_speeds(
-    side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
-    scene: Scene,
+    scene: Scene, side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float],
+    resolved: bool,
 ) -> RelativeDifferences:  # fmt: skip
     """
-    Return relative differences of amplification between friction regularized at each v_reg (`speeds`) and set-valued.
+    Return how much the amplification with friction linear below v_reg differs from that with set-valued friction.
 
-    side: package that computes it at v_reg. resolved: with set-valued friction, only rest and speeds above v_reg count.
+    side: package that computes the former, for every v_reg in `speeds`, m/s. periods: longest motion, in periods of the
+    slower harmonic. resolved: whether peaks of the latter count only at rest and at speeds above v_reg.
     """
     short = shorten_scene(scene, periods)
     return _relative_differences(
@@ -68,14 +73,18 @@ def _compare_at_speeds(
 
 
 def _relative_differences(pairs: Iterable[tuple[Amplification, Amplification]]) -> RelativeDifferences:
-    """Return relative differences of amplification, and errors; pairs: at a parameter value, and in its limit."""
+    """
+    Return the relative differences of amplification in `pairs`, and their errors.
+
+    pairs: for every parameter value, the amplification there and in the limit that the parameter tends to.
+    """
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
 
 
 def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
-    """Return relative differences of Exudyn's amplification with ever stiffer contacts from that of rigid contact."""
+    """Return how much Exudyn's amplification with ever stiffer contacts differs from that with a rigid contact."""
     short = shorten_scene(scene, CONSTANT_STEP_PERIODS)
     v_reg = None if scene.lubricated else STIFFNESS_V_REG
     exact = reference.amplification(short, ENGINE_PHASES, tolerance=EQUATION_TOLERANCE, regularization=v_reg)
@@ -89,7 +98,12 @@ def _compare_stiff_contacts(scene: Scene) -> RelativeDifferences:
 
 
 def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: float, factor: int) -> Array:
-    """Return Exudyn's translational amplification (P, N) in `factor` times the usual number of steps; NaN if failed."""
+    """
+    Return Exudyn's amplification by its translational model with constant steps, `factor` times the usual number.
+
+    The rows are the phase pairs ENGINE_PHASES, the columns the bodies; a run that failed has NaN. penetration: depth by
+    which the weight presses the contact in, over rho.
+    """
     mu = np.full((len(ENGINE_PHASES), len(scene.bodies)), np.nan)
     count = factor * min(MAX_STEPS, math.ceil(scene.duration / loading_period(scene) * STEPS_PER_PERIOD))
     step = scene.duration / count
@@ -109,47 +123,69 @@ def _solve_at_constant_step(scene: Scene, v_reg: float | None, penetration: floa
 
 
 class ConvergenceCase(NamedTuple):
-    """Two computations that must agree as `parameter` goes to 0; expected: exponent of the power law, if known."""
+    """Two computations of the amplification whose difference must vanish like a power of a parameter."""
 
-    what: str
-    parameter: tuple[float, ...]
-    expected: float | None
-    measure: Callable[[Scene], RelativeDifferences]
-    applies: Callable[[Scene], bool]
+    what: str  # the two computations, in words
+    parameter: tuple[float, ...]  # values of the parameter, falling
+    expected: float | None  # exponent that theory gives, None if it gives none
+    measure: Callable[[Scene], RelativeDifferences]  # computes the differences in a scene
+    applies: Callable[[Scene], bool]  # returns whether the comparison makes sense in a scene
 
 
 _by_equations = partial(  # reference equations: friction linear below each speed v_reg, against set-valued friction
-    _compare_at_speeds, reference, EQUATION_PHASES, EQUATION_PERIODS, EQUATION_TOLERANCE, REGULARIZATIONS
+    _compare_at_speeds,
+    side=reference,
+    phases=EQUATION_PHASES,
+    periods=EQUATION_PERIODS,
+    tolerance=EQUATION_TOLERANCE,
+    speeds=REGULARIZATIONS,
 )
 _by_engine = partial(  # Exudyn, friction linear below each speed v_reg, against equations with set-valued friction
-    _compare_at_speeds, multibody, ENGINE_PHASES, ENGINE_PERIODS, STUDY_TOLERANCE, ENGINE_REGULARIZATIONS, True
+    _compare_at_speeds,
+    side=multibody,
+    phases=ENGINE_PHASES,
+    periods=ENGINE_PERIODS,
+    tolerance=STUDY_TOLERANCE,
+    speeds=ENGINE_REGULARIZATIONS,
+    resolved=True,
 )
 
-# Pairs of computations: what is compared, parameter values that go to 0, expected exponent, function, scenes it suits
-CONVERGENCE_CASES = (
+CONVERGENCE_CASES = (  # all comparisons, in the order of the report
     ConvergenceCase(
-        "exact equations: regularized against resolved",
-        REGULARIZATIONS,
-        1.0,
-        partial(_by_equations, True),
-        has_dry_friction,
+        what="exact equations: regularized against resolved",
+        parameter=REGULARIZATIONS,
+        expected=1.0,
+        measure=partial(_by_equations, resolved=True),
+        applies=has_dry_friction,
     ),
     ConvergenceCase(
-        "exact equations: regularized against supremum",
-        REGULARIZATIONS,
-        None,
-        partial(_by_equations, False),
-        has_dry_friction,
+        what="exact equations: regularized against supremum",
+        parameter=REGULARIZATIONS,
+        expected=None,
+        measure=partial(_by_equations, resolved=False),
+        applies=has_dry_friction,
     ),
-    ConvergenceCase("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, has_dry_friction),
-    ConvergenceCase("elastic contact against rigid", PENETRATIONS, 1.0, _compare_stiff_contacts, lambda scene: True),
+    ConvergenceCase(
+        what="engine against resolved",
+        parameter=ENGINE_REGULARIZATIONS,
+        expected=1.0,
+        measure=_by_engine,
+        applies=has_dry_friction,
+    ),
+    ConvergenceCase(
+        what="elastic contact against rigid",
+        parameter=PENETRATIONS,
+        expected=1.0,
+        measure=_compare_stiff_contacts,
+        applies=lambda scene: True,
+    ),
 )
 
 CaseArguments = tuple[Scene, int]  # scene, and index of the comparison in CONVERGENCE_CASES
 
 
 def fit_limit_trends(task: CaseArguments) -> list[Trend]:
-    """Return the power law of each body's differences for one comparison in one scene. Runs inside a worker process."""
+    """Fit a power law to each body's differences, for one comparison in one scene. Runs inside a worker process."""
     scene, number = task
     sizes, errors = CONVERGENCE_CASES[number].measure(scene)
     return _fit_trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
@@ -164,7 +200,11 @@ def _without_value(task: CaseArguments, failed: TaskResult) -> list[Trend]:
 def _fit_trends(
     task: CaseArguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = ""
 ) -> list[Trend]:
-    """Return each body's fitted power law; sizes, errors: relative differences of amplification, (phase, parameter)."""
+    """
+    Return the power law fitted to the differences of each body.
+
+    sizes, errors: for each body an array of relative differences and one of their errors, by phase pair and value.
+    """
     scene, number = task
     what, parameter, expected, *_ = CONVERGENCE_CASES[number]
     return [
@@ -181,7 +221,7 @@ class Convergence(MappedAnalysis[list[Trend]]):
     function, without_value = staticmethod(fit_limit_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[CaseArguments]:
-        """Return every scene under harmonics (with phases), with the index of each comparison that applies to it."""
+        """Return the index of each comparison that applies, with its scene, for all scenes under harmonics."""
         return [
             (scene, number)
             for scene in study.phased

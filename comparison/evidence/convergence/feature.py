@@ -5,8 +5,8 @@ from comparison.evidence.trend_feature import make_trend_feature
 
 FEATURE = make_trend_feature(  # convergence of friction law and contact: result field, analysis, report section
     Convergence(),
-    "Convergence of friction law and contact",
-    "scenes with phases",
-    "what the steps of friction law and contact tend to",
-    "median size at each v_reg (m/s) or penetration (ρ)",
+    title="Convergence of friction law and contact",
+    scenes="scenes with phases",
+    meaning="what the steps of friction law and contact tend to",
+    column="median size at each v_reg (m/s) or penetration (ρ)",
 )

@@ -28,7 +28,11 @@ MEASURED_SPEED_SHARE = 0.9  # Friction is measured while the platform moves fast
 
 @result
 class EffectiveModelValues:
-    """Platform sphere radius, friction, total mass, stiffness below top body: from a motion or stated; else null."""
+    """
+    Properties of the structure: those that a scene states, or those that the motion of one model shows.
+
+    A value that cannot be read is null.
+    """
 
     scene: Annotated[Text, "name of the scene"]
     model: Annotated[str, "key of the model, or scene"]
@@ -44,7 +48,7 @@ class EffectiveModelValues:
 
 
 def word_effective(values: Sequence[EffectiveModelValues]) -> str:
-    """Return in words by how much sphere radius, friction, mass found from motions differ at most from those stated."""
+    """Return in words how far radius, friction and mass read from motions are at most from those that scenes state."""
     known = {each.scene: each for each in values if each.model == "scene"}
     parts = []
     for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
@@ -57,7 +61,7 @@ def word_effective(values: Sequence[EffectiveModelValues]) -> str:
 
 
 def read_scene_values(scene: Scene) -> EffectiveModelValues:
-    """Return stated platform sphere radius, friction, mass, top body's link; platform acceleration at rest, t = 0."""
+    """Return the values that a scene states; contact force and acceleration are those of the first instant, at rest."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return EffectiveModelValues(
         scene=scene.name,
@@ -73,7 +77,7 @@ def read_scene_values(scene: Scene) -> EffectiveModelValues:
 
 
 def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
-    """Return platform sphere radius, friction, mass, top body's link found from a model's motion, or why it failed."""
+    """Compute a motion by a model and return the values that it shows, or the reason why there are none."""
     scene, model = task
     nothing = EffectiveModelValues(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
@@ -87,7 +91,7 @@ def read_values_back(task: tuple[Scene, Model]) -> EffectiveModelValues:
 
 
 class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
-    """Analysis of platform sphere radius, friction, mass, top body's link: as stated and as models' motions show."""
+    """Analysis that reads radius, friction, mass and the top link back from a motion of every model."""
 
     key, stage, level = "effective", "effective values", 2
     seconds = 1.0
@@ -101,7 +105,7 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[EffectiveModelValues]:
-        """Return for each scene sphere radius, friction, mass, top body's link: stated, then by models' motions."""
+        """Return, scene by scene, the values that the scene states, and then those that each model's motion shows."""
         read = self.values(study, surfaces, results)
         of_scenes = (
             [read_scene_values(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
@@ -110,7 +114,9 @@ class EffectiveValues(MappedAnalysis[list[EffectiveModelValues]]):
 
 
 def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
-    """Return from a motion the sphere radius, friction, contact force, mass, stiffness and damping below top body."""
+    """Return the values that a motion shows, by name of the field of `EffectiveModelValues`."""
+    # A point at height z of a sphere of radius R is at the distance sqrt(2 R z) from its lowest point. The radius is
+    # read where the platform is farthest away, the mass from the contact force before anything moves.
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)
@@ -132,7 +138,8 @@ def _fit_top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     """
     Return stiffness and damping of the link below the top body, fitted by least squares to the force on that body.
 
-    Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
+    Where bodies rotate, the force acts half-way up the link and leans with its bars. The mean of both rotations is
+    their lean: it takes no part in the stretch, and gives the weight a part along x.
     """
     turning, damped = "turns" in motion.extra, bool(scene.damping.any())
     barred = scene.bodies[-1].bars is not None and not (scene.offsets.any() or scene.yaws.any())
@@ -157,9 +164,14 @@ def _fit_top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
 
 
 def _measure_friction(scene: Scene, motion: Trajectory, radius: float) -> float:
-    """Return friction from the median ratio of tangential to normal contact force in fast slides; NaN if heat acts."""
+    """
+    Return the friction coefficient: the median ratio of tangential to normal contact force while the platform is fast.
+
+    It is NaN where heat changes the friction. In a lubricated scene it is divided by the speed, s/m.
+    """
     if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")
+    # The contact carries what accelerates all bodies and their weight, `force`, (instants, x y z).
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
     force[:, 2] += scene.total_mass * GRAVITY
     if radius == np.inf:

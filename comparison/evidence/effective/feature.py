@@ -13,20 +13,24 @@ from reference.problem import Scene
 
 
 def _effective_of_scene(findings: Findings, scene: Scene) -> list[EffectiveModelValues]:
-    """Return one scene's platform sphere radius, friction, mass, top body's link: stated, then by models' motions."""
+    """Return the values that a scene states, and then those that the motion of each model shows."""
     return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-EFFECTIVE = SceneField(  # field: platform sphere radius, friction, mass, top body's link; as stated, as motions show
-    EffectiveValues.key, list[EffectiveModelValues], "the scene, then every model", _effective_of_scene
+# Field of each scene's results: radius, friction, mass and top link, as the scene states them and as motions show them
+EFFECTIVE = SceneField(
+    name=EffectiveValues.key,
+    kind=list[EffectiveModelValues],
+    meaning="the scene, then every model",
+    compute=_effective_of_scene,
 )
-FORCED = SceneField(  # field of each scene's results: amplitudes of upper bodies / the platform's, by harmonic
-    "forced",
-    list[ForcedRatio],
-    "one per axis, harmonic and body above the platform; empty under a recorded motion",
-    lambda findings, scene: compute_forced_ratios(scene),
+FORCED = SceneField(  # field of each scene's results: amplitude of each upper body over that of the platform
+    name="forced",
+    kind=list[ForcedRatio],
+    meaning="one per axis, harmonic and body above the platform; empty under a recorded motion",
+    compute=lambda findings, scene: compute_forced_ratios(scene),
 )
-FEATURE = Feature(  # radius, friction, mass, amplitude ratios of each scene: result fields, analysis, report section
+FEATURE = Feature(  # effective values and amplitude ratios of each scene: result fields, analysis, report section
     EffectiveValues.key,
     scene_fields=(EFFECTIVE, FORCED),
     analysis=EffectiveValues(),

@@ -52,19 +52,24 @@ MIN_TOLERANCE = 1e-10  # smallest relative error that a finer run is asked for: 
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """Result of a model: amplification mu, error, status; or the broken input rule (`invalid`), or error `raised`."""
+    """Answer of a model to an extreme case: a result at each phase pair, or the reason why there is none."""
 
-    mu: Array
-    error: Array
-    status: tuple[str, ...]
-    invalid: str = ""
-    raised: str = ""
+    mu: Array  # amplification, (phase pairs, bodies)
+    error: Array  # estimated absolute error of mu, (phase pairs, bodies)
+    status: tuple[str, ...]  # outcome of each phase pair
+    invalid: str = ""  # rule that the input breaks, in words, if the model refused it
+    raised: str = ""  # error that the model raised, in words
 
 
 def judge_answer(
     reply: ModelAnswer, finer: Sequence[ModelAnswer], tolerance: float, invalid: bool, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on a result's worst phase pair; finer: runs, most trusted first; right: allowed outcomes."""
+    """
+    Return the verdict on a model's answer: that on its worst phase pair.
+
+    finer: answers of the finer runs, the most trusted first. tolerance: relative error asked. invalid: whether the
+    model must refuse the input. right: outcomes that are correct instead of a value, if they are known.
+    """
     if reply.raised:
         return MatrixEntry(CellVerdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
@@ -79,7 +84,7 @@ def judge_answer(
 def _judge_point(
     reply: ModelAnswer, m: int, finer: Sequence[ModelAnswer], tolerance: float, right: Sequence[str]
 ) -> MatrixEntry:
-    """Return the verdict on a result at phase pair `m`, checked by finer runs; right: correct outcomes, if known."""
+    """Return the verdict on a model's answer at phase pair number `m`; other arguments: as of `judge_answer`."""
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICAL_OUTCOMES | NUMERICAL_OUTCOMES | {Outcome.OK}):
@@ -107,20 +112,25 @@ def _judge_value(status: str, mu: Array, error: Array, finer: Sequence[FinerPoin
         return _judge_without_error(status, mu, known[0][0], tolerance) if known else unconfirmed
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
         return MatrixEntry(CellVerdict.FAILED, f"{status}, but no finite number", status)
-    share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
-    if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + RELATIVE_ROUNDING)):
-        claim = f"an error estimate of {share:.1e}, asked: {tolerance:g}" if np.isfinite(share) else "mu = 0"
+    relative = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
+    if (error < 0.0).any() or (status == Outcome.OK and relative > tolerance * (1.0 + RELATIVE_ROUNDING)):
+        claim = f"an error estimate of {relative:.1e}, asked: {tolerance:g}" if np.isfinite(relative) else "mu = 0"
         reason = f"{status} with {claim}"
         entry = MatrixEntry(CellVerdict.FAILED, reason, status)
     else:
-        entry = _judge_by_finer_runs(status, mu, error, share, known, tolerance) or unconfirmed
-    return replace(entry, error=finite_or_none(share))
+        entry = _judge_by_finer_runs(status, mu, error, relative, known, tolerance) or unconfirmed
+    return replace(entry, error=finite_or_none(relative))
 
 
 def _judge_by_finer_runs(
-    status: str, mu: Array, error: Array, share: float, known: Sequence[tuple[Array, Array]], tolerance: float
+    status: str, mu: Array, error: Array, relative: float, known: Sequence[tuple[Array, Array]], tolerance: float
 ) -> MatrixEntry | None:
-    """Return the verdict by finer runs, most trusted first, on amplification mu, or None; share: its relative error."""
+    """
+    Return the verdict of the finer runs on the amplification mu at one phase pair, None if none of them is decisive.
+
+    A run contradicts mu if they differ by more than both errors. It confirms mu if its own error is small enough.
+    relative: largest relative error that the model states. known: mu and error of each finer run with a value.
+    """
     for value, estimate in known:
         if reason := _word_excess_over_stated_error(value, estimate, mu, error):
             return MatrixEntry(CellVerdict.FAILED, reason, status)
@@ -128,14 +138,14 @@ def _judge_by_finer_runs(
             status == Outcome.OK
             and (estimate <= np.maximum(error, CONFIRMING_ERROR_SHARE * tolerance * np.abs(mu))).all()
         ):
-            return MatrixEntry(CellVerdict.CONVERGED, f"error {share:.1e} confirmed", status)
+            return MatrixEntry(CellVerdict.CONVERGED, f"error {relative:.1e} confirmed", status)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return MatrixEntry(CellVerdict.LIMIT, f"{status}: {share:.1e}", status)
+        return MatrixEntry(CellVerdict.LIMIT, f"{status}: {relative:.1e}", status)
     return None
 
 
 def _word_excess_over_stated_error(finer_mu: Array, finer_error: Array, mu: Array, error: Array) -> str:
-    """Return in words how far amplification mu is from a finer run's, if by more than both errors added, else ""."""
+    """Return in words how far mu is from that of a finer run; empty if by no more than the sum of both errors."""
     off, allowed = np.abs(mu - finer_mu), error + finer_error + RELATIVE_ROUNDING * np.abs(mu)
     worst = int((off / allowed).argmax())
     times = off[worst] / allowed[worst]
@@ -161,7 +171,12 @@ class MatrixCell:
 
 
 def list_cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[MatrixCell]:
-    """Return the cells of the matrix to compute; users' engines skip extremes that test Exudyn's own numerics."""
+    """
+    Return the cells of the matrix to compute.
+
+    A user's engine is computed at the extremes of the built-in model that it is like, but not at those of Exudyn's own
+    numerical parameters.
+    """
     pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
     return [MatrixCell(row, column) for row, column in pairs if not (column.like and row.amplification)]
 
@@ -180,6 +195,7 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
         for other, settings, usual in column.finer if makes_checkable_claim(reply) else ():
             # If the finer run calls another function, pass on only those settings of the row that this function has.
             known = {key: value for key, value in row.settings.items() if other == function or key in settings}
+            # A row that asks for less error than usual asks as much less of the finer run.
             strict = max(usual * min(1.0, tolerance / column.tolerance), MIN_TOLERANCE)
             finer.append(_ask_model(row, other, {**settings, **known, "tolerance": strict}))
             statuses = finer[-1].status
@@ -194,7 +210,9 @@ def solve_cell(cell: MatrixCell) -> MatrixEntry:
 
 def makes_checkable_claim(reply: ModelAnswer) -> bool:
     """
-    Return whether finer runs could contradict the result: not if invalid, failed, or as uncertain as it is large.
+    Return whether finer runs could contradict the answer.
+
+    They could not if the input was refused, if the model failed, or if the stated error is as large as the value.
     """
     return not (reply.invalid or reply.raised) and any(
         (error < np.abs(mu)).any() if status == Outcome.TOLERANCE_NOT_MET else status not in NUMERICAL_OUTCOMES
@@ -203,7 +221,11 @@ def makes_checkable_claim(reply: ModelAnswer) -> bool:
 
 
 def _ask_model(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> ModelAnswer:
-    """Return a function's result for the row's scene and phases; row.max_work: largest number of Exudyn's steps."""
+    """
+    Return the answer of a function, stated by its import path, for the scene and the phases of an extreme case.
+
+    If `settings` limit the number of Exudyn's steps ("max_work"), then the limit of the row applies.
+    """
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:
@@ -228,7 +250,7 @@ def make_extreme_scene(stated: Mapping[str, Any]) -> Scene:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Computations of each model at each extreme; limit: processor time, s (rounded up), after which one is stopped."""
+    """Computations of every model in `columns` at every extreme in `rows`; one is stopped after `limit` s."""
 
     rows: Sequence[ExtremeCase]
     columns: Sequence[ModelColumn] = COLUMNS
@@ -246,15 +268,22 @@ class Extremes:
             row[cell.column.key] = results.value(self._task(cell), _entry_of_failure)
         used = {key for row in entries.values() for key in row}
         titles = {column.key: column.title for column in self.columns if column.key in used}
-        return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
+        rows = [Extreme(group, title, row) for (group, title), row in entries.items()]
+        return Matrix(columns=titles, rows=rows, run={})
 
     def _task(self, cell: MatrixCell) -> Task:
         """Return the task that judges a model at an extreme; it waits for compiled equations only if it solves them."""
         row, column = cell.row, cell.column
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
-        seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions
-        group = column.key if column.like else ""
-        return Task(solve_cell, cell, STAGE, seconds, None, compiled, self.limit, group)
+        return Task(
+            solve_cell,
+            cell,
+            STAGE,
+            seconds=column.seconds if row.quick else SECONDS_OF_LONG_ROWS,
+            needs_compiled_reference=EQUATIONS in functions,
+            timeout=self.limit,
+            group=column.key if column.like else "",
+        )
 
 
 def _entry_of_failure(cell: MatrixCell, failed: TaskResult) -> MatrixEntry:

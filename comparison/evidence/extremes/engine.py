@@ -1,8 +1,9 @@
 """
 The engine at a contact stiffness or a largest step that the caller states.
 
-The engine of the study chooses both by itself. Here its levels of accuracy start at the given step or stiffness, which
-shows whether the error estimate covers a bad choice, and whether the levels find the way from it to an answer.
+The engine computes a motion at several levels of accuracy, each with a smaller step and a stiffer contact, until two
+agree. In a study it chooses both by itself. Here its levels start at the given step or stiffness, which shows whether
+the error estimate covers a bad choice, and whether the levels find the way from it to an answer.
 """
 
 import math
@@ -29,7 +30,11 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """Return Exudyn's amplification; its accuracy levels begin at a contact stiffness, N/m, or largest step, s."""
+    """
+    Return Exudyn's amplification by accuracy levels that begin at a stated contact stiffness, N/m, or largest step, s.
+
+    max_work: largest number of Exudyn's steps per phase pair. Other arguments: as of `multibody.amplification`.
+    """
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
@@ -38,11 +43,11 @@ def amplification(
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
     if step is not None:  # multiply the largest step by `factor`; keep the smallest
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        # Step divisions added so that the smallest step stays, and growth of the level's error, of second order in step
-        more, error = math.ceil(math.log(factor, LEVEL_STEP_RATIO)), max(factor, 1.0) ** 2
+        more_divisions = math.ceil(math.log(factor, LEVEL_STEP_RATIO))  # as many as keep the smallest step
+        error_growth = max(factor, 1.0) ** 2  # The error of a level is of second order in the step.
         for number, level in enumerate(levels):
-            changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)
-            levels[number] = replace(changed, max_divisions=max(level.max_divisions + more, 0))
+            changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error_growth)
+            levels[number] = replace(changed, max_divisions=max(level.max_divisions + more_divisions, 0))
     return multibody.amplification(
         scene, phases, model, regularization, tolerance, full=True, levels=levels, max_work=max_work
     )

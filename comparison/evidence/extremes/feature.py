@@ -5,14 +5,14 @@ from comparison.report.feature import Feature, make_stored_field
 from comparison.report.section import Section
 
 # Results field with the verdicts on every model (columns) at every extreme (rows): the matrix of extremes
-FOUND = make_stored_field(STORED, "extremes", "every model at the extremes of every quantity")
+FOUND = make_stored_field(STORED, name="extremes", meaning="every model at the extremes of every quantity")
 FEATURE = Feature(  # stability of the models at extremes: results field and report section
     "extremes",
-    (FOUND,),
+    fields=(FOUND,),
     section=Section(
         "Stability at the extremes",
-        STORED.word_how_to_make(),
-        lambda report: {
+        absent=STORED.word_how_to_make(),
+        context=lambda report: {
             "verdicts": [(verdict.value, MEANING_OF_VERDICT[verdict]) for verdict in CellVerdict],
             "describe": describe_entry,
         },

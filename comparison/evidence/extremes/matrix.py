@@ -95,7 +95,7 @@ class Matrix:
         ]
 
 
-STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")  # file and command that writes it
+STORED = StoredFile(name=FILE, kind=Matrix, what="a matrix of extremes", command="phase-resonance extremes")
 
 
 def describe_entry(entry: MatrixEntry) -> str:

@@ -66,7 +66,11 @@ class ExtremeCase:
 def _cases_of_group(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL_MODELS, **more: Any
 ) -> list[ExtremeCase]:
-    """Return an extreme case for each scene; scenes: by value of the varied quantity `group`; more: other fields."""
+    """
+    Return an extreme case for each of `scenes`, which are listed by the value of the quantity that is extreme in them.
+
+    group: name of this quantity. more: further fields of the extreme cases.
+    """
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
     return [ExtremeCase(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
@@ -182,7 +186,7 @@ def _chain_cases() -> Iterator[ExtremeCase]:
 
 
 def _bar_cases() -> Iterator[ExtremeCase]:
-    """Yield extremes of the bars that carry a body of 1 kg: stiffness, ratio of its weight to their buckling load."""
+    """Yield extremes of the bars that carry a body: their stiffness, and its weight over their buckling load."""
     group = "load over the buckling load of bars"
     yield from _cases_of_group(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
     yield ExtremeCase(group, "1.000001", put_on_bars(1.000001), ALL_MODELS, invalid=True)

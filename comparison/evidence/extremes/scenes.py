@@ -20,7 +20,14 @@ def make_baseline_scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """Return scene file tables of the baseline (`fig3-I`, twice the amplitude) with given values; None: no such key."""
+    """
+    Return the tables of a scene file for the baseline, the paper's `fig3-I` with twice its loading, or a variation.
+
+    Every argument replaces values of the baseline; a value None leaves its key out. amplitudes: m/s^2, a row for each
+    axis, a column for each harmonic. periods: s, decay: 1/s, of both harmonics. link: s, periods of every link along x
+    and y. damping: of the links, over critical damping. storey: m, vertical distance of the bodies. isolator: keys of
+    that table.
+    """
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]
@@ -51,17 +58,21 @@ def add_vertical_harmonic(amplitude: float) -> list[list[float]]:
 
 
 def raise_bodies(stated: dict[str, Any]) -> dict[str, Any]:
-    """Return a scene of large radius with its bodies raised as much as the radius grew: contacts stay as far below."""
+    """Return a scene of large radius with its bodies raised by as much, so that they are as far above the contacts."""
     rise = max(stated["isolator"]["radius"] - BASELINE_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def put_on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """Return the baseline scene with body 2 on four bars of 1 m; share: its weight / their buckling load."""
-    beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
+    """
+    Return the baseline scene with body 2, of 1 kg, on four bars of 1 m; `share` is its weight over their buckling load.
+
+    keys: further keys of the bars.
+    """
+    bending = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)  # N m^2, EI of a bar, which buckles under pi^2 EI / (1 m)^2
     stated = make_baseline_scene()
     platform, body = stated["bodies"]
-    bars = {"count": 4, "bending_stiffness": beam, "length": 1.0, "load_effect": "softening", **keys}
+    bars = {"count": 4, "bending_stiffness": bending, "length": 1.0, "load_effect": "softening", **keys}
     return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 

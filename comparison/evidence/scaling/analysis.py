@@ -1,11 +1,11 @@
 """
 Scaling test: how the step from small to exact equations falls when loading and friction scale down together.
 
-Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
-geometry that the small equations drop is of the
-order of its square: the step must fall like s^2, or geometry is not its cause. The viscous friction coefficient f_c |v|
-scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
-shrink like s^2 too, which the second trend shows.
+If loading and dry friction are multiplied by s, and the rate at which friction changes with the speed by 1/s, then the
+motion is multiplied by s. The geometry that the small equations drop is of the order of the motion's square. So the
+relative difference between the two equations, called the step, must fall like s^2, or geometry is not its cause. The
+viscous friction coefficient f_c |v| scales by itself. The printed small equations are not quite invariant either: their
+friction terms with xi'' x_1 / rho shrink like s^2 too, which the second trend shows.
 """
 
 from typing import Any
@@ -31,11 +31,16 @@ EXACT_MINUS_SMALL = "exact minus small"
 # name of the change of amplification by the small-vibration equations when loading and friction are halved
 SMALL_SCALE_DIFFERENCE = "small, s minus s/2"
 
-Arguments = tuple[Scene, bool]  # scene; True: peak acceleration at any sliding speed; False: at rest or > s * 1 mm/s
+# A scene, and whether its peaks count at any sliding speed (`supremum`) or only at rest and above s * 1 mm/s
+Arguments = tuple[Scene, bool]
 
 
 def scale_scene(scene: Scene, s: float) -> Scene:
-    """Return a scene: loading, dry friction, travel limit times s; friction's change rate with speed divided by s."""
+    """
+    Return the scene whose motion is s times as large: loading, dry friction and travel limit are multiplied by s.
+
+    The rate at which friction changes with the sliding speed is divided by s.
+    """
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
     if not law.constant or law.elastic:
@@ -50,7 +55,11 @@ def scale_scene(scene: Scene, s: float) -> Scene:
 
 
 def fit_scene_trends(task: Arguments) -> list[Trend]:
-    """Fit in a worker power laws in s to amplification changes by body: small to exact equations; small, s/2 to s."""
+    """
+    Fit power laws in s to two relative changes of each body's amplification. Runs inside a worker process.
+
+    The first is from the small to the exact equations at each s, the second is by the small equations from s/2 to s.
+    """
     scene, supremum = task
     answers = [_solve_both_equations(scale_scene(scene, s), supremum, s) for s in LOADING_SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (scale, equations, phases, body)
@@ -78,7 +87,7 @@ def fit_scene_trends(task: Arguments) -> list[Trend]:
 
 
 def _solve_both_equations(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
-    """Return amplification and error, each (2, P, N): small-vibration, exact equations; P phase pairs; N bodies."""
+    """Return amplification and error; axes of each: equations (small, exact), phase pair, body."""
     cutoff = None if supremum else DEFAULT_V_C * s  # m/s, peaks at slower sliding do not count; scales with the motion
     answers = [
         reference.amplification(scene, SCALING_PHASES, equations=equations, tolerance=SCALING_TOLERANCE, cutoff=cutoff)
@@ -103,14 +112,18 @@ def _name_peak(scene: Scene, supremum: bool) -> str:
 
 
 class Scaling(MappedAnalysis[list[Trend]]):
-    """Analysis of how the difference of amplification, exact - small equations, falls with loading and friction."""
+    """Analysis of how the step from small to exact equations falls as loading and friction become smaller."""
 
     key, stage, level = "scaling", "scaling test", 2
     seconds = 0.1
     function, without_value = staticmethod(fit_scene_trends), staticmethod(_without_value)
 
     def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
-        """Return harmonic scenes with each kind of peak acceleration; none if friction heats: heat does not scale."""
+        """
+        Return each scene under harmonics with each definition of the peak that makes a difference in it.
+
+        Scenes with heated friction are left out, because heat does not scale with the motion.
+        """
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [
             (scene, supremum) for scene in scenes for supremum in ([True, False] if has_dry_friction(scene) else [True])

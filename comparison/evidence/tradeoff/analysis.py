@@ -32,7 +32,8 @@ TASK_SECONDS = 3.0  # s, processor time that one task should take: it gets as ma
 # A task is stopped after TIME_LIMIT_RATIO times its expected processor time plus SPARE_SECONDS, s, for compilation.
 # Explicit methods on stiff links take that long.
 TIME_LIMIT_RATIO, SPARE_SECONDS = 20.0, 60.0
-# s, resolution of a process's processor time under a limit; subtracted, so that the finer time of a lone thread counts
+# s, resolution of the processor time of a process. It is subtracted, so that the finer clock of the thread decides
+# unless other threads worked as well.
 CLOCK_STEP = 0.01
 OWN_SOLUTION_SECONDS = 0.01  # s, rough processor time per phase pair of the reference solution made for one method
 # Methods that check a reference solution, described in words; keys: first word of the method's name
@@ -94,7 +95,8 @@ def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return SettingResult(nothing, nothing, _measure_since(begin), np.nan, word_exception(error))
+        message = word_exception(error)
+        return SettingResult(nothing, nothing, seconds=_measure_since(begin), step=np.nan, error_message=message)
     seconds = _measure_since(begin)
     if isinstance(answer, tuple):
         answer, step = answer
@@ -117,28 +119,36 @@ def _measure_since(begin: tuple[float, float]) -> float:
 def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
     """Return the result of a measurement that failed: NaN at every phase pair, and the reason."""
     nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
-    return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
+    return SettingResult(nothing, nothing, seconds=0.0, step=np.nan, error_message=failed.reason)
 
 
 def join_results(parts: Sequence[SettingResult]) -> SettingResult:
-    """Return results of several tasks of one function as one: times added, steps averaged, first error kept."""
+    """Join the results of one function's tasks: times are added, steps averaged, and the first error is kept."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
-    seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
     return SettingResult(
-        mu, error_estimate, seconds, step, next(filter(None, (part.error_message for part in parts)), "")
+        mu=mu,
+        error_estimate=error_estimate,
+        seconds=sum(part.seconds for part in parts),
+        step=float(np.mean([part.step for part in parts])),
+        error_message=next(filter(None, (part.error_message for part in parts)), ""),
     )
 
 
 @dataclass(frozen=True)
 class TradeOff:
-    """Measurement of amplification error and time by method, parameter value, scene; quick: fewer values, phases."""
+    """
+    Measurement of the error and the time of every setting, that is a method with one value of its varied parameter.
+
+    A question is a set of equations to solve; the errors of its settings are against its reference solution. quick:
+    fewer values and phase pairs. supplied: engines of the user, which are measured as well.
+    """
 
     scenes: Sequence[Scene]
     quick: bool = False
     supplied: tuple[Model, ...] = ()
 
     def tasks(self) -> list[Task]:
-        """Return tasks of about TASK_SECONDS: each method at each parameter value, accurate solutions to compare."""
+        """Return the tasks, of about TASK_SECONDS each, that measure the settings and compute reference solutions."""
         tasks = [task for scene in self.scenes for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # Settings with the same function share its tasks.
 
@@ -151,7 +161,11 @@ class TradeOff:
         return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
-        """Yield lists of tasks: the questions' reference solutions; for each setting, its runs and their reference."""
+        """
+        Yield the tasks of one function at all phase pairs, for one function after the other.
+
+        First come the reference solutions of the questions; then, for each setting, itself and its reference solution.
+        """
         questions = {question.key: question for question in list_questions(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
@@ -162,7 +176,11 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return tasks that call a function at all phase pairs; seconds: processor time of a pair, 20 s of motion."""
+        """
+        Return the tasks that call a function at all phase pairs of a question.
+
+        seconds: rough processor time of a phase pair for a motion of 20 s.
+        """
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
@@ -172,11 +190,13 @@ class TradeOff:
             measurement = Measurement(scene, function, phases[first : first + size])
             rough = each * len(measurement.phases)
             timeout = limit * size if limit else TIME_LIMIT_RATIO * rough + SPARE_SECONDS
-            tasks.append(Task(measure_setting, measurement, STAGE, rough, about=scene, timeout=timeout, group=engine))
+            tasks.append(
+                Task(measure_setting, measurement, STAGE, seconds=rough, about=scene, timeout=timeout, group=engine)
+            )
         return tasks
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
-        """Return one scene's amplification errors and processor times by method and parameter value, as measured."""
+        """Return the measured errors and processor times of every setting for one scene."""
         measured = (
             join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
@@ -188,15 +208,24 @@ class TradeOff:
         numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
         phases = sample_phases(max(question.points for question in answered))
-        found = trade.SceneTrade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
+        found = trade.SceneTrade(
+            scene=scene.name,
+            title=scene.title,
+            digest=scene.digest(),
+            bodies=len(scene.bodies),
+            questions=answered,
+            entries=entries,
+            run={},
+        )
         return trade.MeasuredTrade(found, trade.label_values(entries, values, phases))
 
 
 def make_entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """
-    Return errors, time of a method at a parameter value; reference_solution: amplification to compare, M pairs, (M, N).
+    Return a setting with its measured errors and time.
 
-    Phase pairs without a reference solution, such as motions that end at the rim, count neither for nor against it.
+    reference_solution: amplification that its own is compared with, (phase pairs, bodies). Phase pairs without a value
+    there, such as those of motions that end at the rim, count neither for nor against the setting.
     """
     with np.errstate(divide="ignore", invalid="ignore"):  # a body at rest has no relative error
         error = np.abs(measured.mu / reference_solution - 1.0)
@@ -220,7 +249,7 @@ def make_entry(setting: Setting, measured: SettingResult, reference_solution: Ar
 def _make_solved_question(
     question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
 ) -> trade.SolvedQuestion:
-    """Return a question (equations to solve) with its reference solution's description, largest error, and checks."""
+    """Return a question (equations to solve) with its reference solution and how this was checked, in words."""
     error = trade.find_error_quantile(reference_solution.relative_error_estimate.ravel(), 1.0)
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
@@ -232,12 +261,21 @@ def _make_solved_question(
     own = f"it answers at {answered} of them, {own}" if 0 < answered < points else own
     own = f"{own}, its tolerance is not met: no smaller error can be told" if (error or 0.0) > tolerance else own
     checks = [own, *_word_agreements(question, entries)]
-    return trade.SolvedQuestion(question.key, question.title, points, solution, error, checks)
+    return trade.SolvedQuestion(
+        key=question.key,
+        title=question.title,
+        points=points,
+        reference_solution=solution,
+        error=error,
+        checks=checks,
+    )
 
 
 def _word_agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
-    Return sentences: how closely the most accurate settings (by other methods, if any) agree with the reference.
+    Return phrases that say how closely the most accurate settings agree with the reference solution.
+
+    They are one for each kind of other method; if there is none, then one for the method of the reference solution.
     """
     by_engine = question.reference_solution[0].startswith("multibody")
     candidates = [each for each in entries if each.question == question.key and not each.model_error and each.complete]

@@ -76,7 +76,7 @@ def main(argv: Sequence[str], executor: Pool = make_process_pool) -> int:
     measured = measure_trades(scenes, options, argv, console, executor)
 
     def write() -> list[Path]:
-        """Write errors, compute times (also earlier) and each scene's amplification; return the first file's path."""
+        """Write all errors and times, with those of earlier runs, and a file of amplifications for each scene."""
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         files = publish_files(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
         for each in measured:
@@ -102,7 +102,7 @@ def _measure_cost_growth(
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
     series = [*CostGrowth(scene).collect(results), measure_by_workers(scene, make_process_pool)]
     facts = collect_run_facts("tradeoff", options, words, begin)
-    measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
+    measured = MeasuredGrowth(schema=growth.SCHEMA, scene=scene.name, title=scene.title, series=series, run=facts)
     write = partial(publish_files, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     write_and_show(out, write, partial(print_growth, console, series))
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
@@ -147,7 +147,7 @@ def _load_trades(out: Path) -> list[SceneTrade]:
 def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """Return scenes' errors and compute times, time and provenance of the run; stored results are not remeasured."""
+    """Measure the scenes, as far as no result is stored; return their errors and times with facts of the run."""
     supplied = load_user_models(options.model, options.model_limit, options.scheduler)
     tradeoff = TradeOff(scenes, options.quick, supplied)
     tasks, width = tradeoff.tasks(), read_number_of_jobs(options)

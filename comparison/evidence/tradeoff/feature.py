@@ -22,13 +22,17 @@ def make_tradeoff_panels(trade: SceneTrade) -> list[Panel]:
 
 
 def word_trades(trades: Sequence[SceneTrade]) -> str:
-    """Return a clause: numbers of settings (method and parameter value) and scenes measured; speed is not judged."""
+    """Return a clause that says how many settings (methods with a parameter value) and scenes were measured."""
     settings = sum(len(trade.entries) for trade in trades)
     return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
 
 
 def word_fastest_methods(trade: SceneTrade) -> list[dict[str, str]]:
-    """Return, by equations solved, the fastest method for TARGET_ERRORS in words; one that estimates errors if any."""
+    """
+    Return, for each question (equations to solve), its title and a text on the fastest method for each target error.
+
+    A method that estimates its error is preferred to a faster one that does not.
+    """
     answers = []
     for question in trade.questions:
         parts = []
@@ -80,7 +84,7 @@ def _tradeoff_panel(trade: SceneTrade, question: SolvedQuestion, body: int) -> P
     }
 
     def rank(method: str) -> tuple[bool, int]:
-        """Return the sort key of a method: without model error first, then by how often it is on the Pareto front."""
+        """Return the sort key of a method: first those of the same model, then those often on the Pareto front."""
         return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
 
     shown = sorted(curves, key=rank)[:MAX_CURVES]
@@ -106,12 +110,14 @@ def _line_of_method(method: str, entries: Sequence[MeasuredSetting], body: int, 
 
 
 TRADES = ResultField(  # results field: error against compute time, read from the file that the command `tradeoff` wrote
-    "tradeoff",
-    list[SceneTrade],
-    trade.STORED.word_field("error against compute time for every model and parameter"),
+    name="tradeoff",
+    kind=list[SceneTrade],
+    meaning=trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load_trades,
 )
-GROWTH = make_stored_field(growth.STORED, "growth", "how the cost grows with bodies, duration, phase pairs and workers")
+GROWTH = make_stored_field(  # results field: growth of the compute time, read from the file of `tradeoff --growth`
+    growth.STORED, name="growth", meaning="how the cost grows with bodies, duration, phase pairs and workers"
+)
 
 
 def _section_context(report: Report) -> Mapping[str, Any]:
@@ -124,11 +130,11 @@ def _section_context(report: Report) -> Mapping[str, Any]:
 
 FEATURE = Feature(  # error against compute time, and growth of this time: results fields and report section
     "tradeoff",
-    (TRADES, GROWTH),
+    fields=(TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        trade.STORED.word_how_to_make(" SCENE"),
-        _section_context,
+        absent=trade.STORED.word_how_to_make(" SCENE"),
+        context=_section_context,
         verifies=True,
         verdict=lambda results: word_trades(TRADES.get(results) or ()),
     ),

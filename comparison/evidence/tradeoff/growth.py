@@ -21,7 +21,7 @@ from reference.problem import Scene, SceneError
 WORKER_CALLS, PAIRS_PER_CALL = 16, 64  # calls of the equations timed with 1, 2, 4 ... workers, and phase pairs per call
 
 FILE = "growth.json"  # name of the file on how compute time grows with bodies, duration, phase pairs and workers
-SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # name of the format of growth.json
+SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"  # states in the file what it is
 BODY_COUNTS = (2, 4, 8, 16, 32, 64, 100)  # numbers of bodies for which the processor time is measured
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s, durations of motion for which the processor time is measured
 PHASE_PAIRS = "phase pairs"  # quantity with which the processor time grows: number of phase pairs per call
@@ -57,22 +57,34 @@ def split_upper_body(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """Quantity with which processor time grows. scene: function that returns a scene changed to one of its values."""
+    """Quantity with which processor time grows, and where this is measured."""
 
     name: str
     unit: str
-    values: tuple[float, ...]
-    scene: Callable[[Scene, float], Scene]
-    models: tuple[Model, ...]
+    values: tuple[float, ...]  # values of the quantity at which the time is measured
+    scene: Callable[[Scene, float], Scene]  # returns a scene changed to one of these values
+    models: tuple[Model, ...]  # models whose time is measured
 
 
 _MEASURED_MODELS = EXACT, TRANSLATIONAL, SPATIAL  # models whose processor time is measured
 QUANTITIES = (  # quantities with which processor time grows, their values, and the models that are measured
-    GrowingQuantity("bodies", "", BODY_COUNTS, lambda scene, n: split_upper_body(scene, int(n)), _MEASURED_MODELS),
     GrowingQuantity(
-        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _MEASURED_MODELS
+        name="bodies",
+        unit="",
+        values=BODY_COUNTS,
+        scene=lambda scene, count: split_upper_body(scene, int(count)),
+        models=_MEASURED_MODELS,
     ),
-    GrowingQuantity(PHASE_PAIRS, "", PHASE_PAIR_COUNTS, lambda scene, n: scene, (EXACT,)),
+    GrowingQuantity(
+        name="duration",
+        unit="s",
+        values=DURATIONS,
+        scene=lambda scene, duration: scene.with_values({"duration": duration}),
+        models=_MEASURED_MODELS,
+    ),
+    GrowingQuantity(
+        name=PHASE_PAIRS, unit="", values=PHASE_PAIR_COUNTS, scene=lambda scene, count: scene, models=(EXACT,)
+    ),
 )
 
 
@@ -109,20 +121,33 @@ class MeasuredGrowth:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
 
-# growth.json: its content, what it is called in messages, the command that writes it
-STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance tradeoff --growth")
+STORED = StoredFile(
+    name=FILE, kind=MeasuredGrowth, what="a measured growth", command="phase-resonance tradeoff --growth"
+)
 
 
 def make_cost_series(
     quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]
 ) -> CostSeries:
     """Return the series of times with its fitted slope; seconds: NaN where there is no measurement."""
-    slope = map(finite_or_none, fit_slope(values, seconds))
-    return CostSeries(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
+    slope, uncertainty = map(finite_or_none, fit_slope(values, seconds))
+    return CostSeries(
+        quantity=quantity,
+        unit=unit,
+        model=model,
+        values=list(values),
+        seconds=[finite_or_none(each) for each in seconds],
+        slope=slope,
+        uncertainty=uncertainty,
+    )
 
 
 def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """Return p of seconds ~ values^p, fitted to the larger half of values, and standard error; NaN for under 3."""
+    """
+    Return the exponent p of seconds ~ values^p and its standard error.
+
+    It is fitted to the larger half of the values that have a time. Both are NaN for fewer than three of these.
+    """
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # number of values before the first without a measurement
     if known < 3:
         return float("nan"), float("nan")
@@ -157,7 +182,7 @@ class CostGrowth:
         return collected
 
     def _series(self) -> list[tuple[GrowingQuantity, Model, list[Task | None]]]:
-        """Return for each growing quantity and model a task for every value; None if a value makes no valid scene."""
+        """Return each growing quantity with each of its models and one task per value, None for an invalid scene."""
         return [
             (quantity, model, [self._task(quantity, model, value) for value in quantity.values])
             for quantity in QUANTITIES

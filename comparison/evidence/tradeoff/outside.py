@@ -26,19 +26,26 @@ LUBRICATED_V_REG = 1e6  # m/s, friction is linear below it; above any speed, so 
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
-    """Return d(position, velocity)/dt by exact equations (3.9)-(3.13), (4.4); friction linear below `corner`, m/s."""
+    """
+    Return the time derivative of the state by the exact equations (3.9)-(3.13) and (4.4).
+
+    y: state, the x and y of every body and then their velocities. system: constants of the scene. s: exponents
+    -decay + i omega of both harmonics, phase: their phases, rad. corner: friction is linear below this speed, m/s.
+    """
+    # Every body gets the pull of the links below and above it, and the inertia of the shaken frame. The platform's
+    # acceleration follows from its pull, friction and the sphere that it must stay on (exact_acceleration).
     below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)
     u = (system.amplitudes[:, 0] * z[0] + system.amplitudes[:, 1] * z[1]).real
     state = np.ascontiguousarray(y)  # in one piece of memory: SciPy's Radau passes columns of a matrix
     x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
-    px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
+    px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]  # position and velocity of the platform
     speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
     speed = np.sqrt(speed2)
     if system.rate > 0.0:
         friction -= system.rise * np.expm1(-system.rate * speed)
-    factor = friction / max(speed, corner)
+    factor = friction / max(speed, corner)  # friction coefficient per speed: times the velocity, it has its direction
     out = np.empty(4 * count)
     out[: 2 * count] = y[2 * count :]
     acceleration = out[2 * count :].reshape((count, 2))
@@ -62,7 +69,7 @@ def compute_state_derivative(t: float, y: Array, system: Any, s: Any, phase: Arr
 
 @njit  # type: ignore[untyped-decorator]
 def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Array:
-    """Return the time derivatives (T, 4 N) of states (T, 4 N) at T times; N bodies: positions, then velocities."""
+    """Return the time derivatives of T states of N bodies, each (T, 4 N); see `compute_state_derivative`."""
     out = np.empty_like(states)
     for n in range(len(times)):
         out[n] = compute_state_derivative(times[n], states[n], *constants)
@@ -70,7 +77,7 @@ def compute_state_derivatives(times: Array, states: Array, constants: Any) -> Ar
 
 
 def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """Return the arguments of `compute_state_derivative` after t, y: scene's constants, harmonics, phases, v_reg."""
+    """Return the arguments of `compute_state_derivative` that follow time and state."""
     system = pack_scene(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * LUBRICATED_V_REG), LUBRICATED_V_REG
@@ -80,7 +87,11 @@ def pack_constants(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, .
 def integrate_motion(
     scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float
 ) -> tuple[Array, Array]:
-    """Return T instants, s, dense near the peaks, and SciPy's states there, (T, 4 N). Raises ValueError if it fails."""
+    """
+    Return T instants, s, that are dense near the peaks of acceleration, and the states at them, (T, 4 N).
+
+    method: name of the method of SciPy's `solve_ivp`. Raises ValueError if it fails.
+    """
     run = solve_ivp(
         compute_state_derivative, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
         args=pack_constants(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE_TOLERANCE_RATIO,
@@ -105,6 +116,7 @@ def compute_absolute_accelerations(scene: Scene, phase: ArrayLike, times: Array,
     """Return the magnitudes of the N bodies' absolute accelerations at T times, m/s^2, (T, N)."""
     constants, count = pack_constants(scene, phase, v_reg), len(scene.bodies)
     a = compute_state_derivatives(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
+    # Vertical acceleration of the platform, by differentiating z = rho - sqrt(rho^2 - x^2 - y^2) twice
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
     depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
     vz = (x * v).sum(axis=1) / depth

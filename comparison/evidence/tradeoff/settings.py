@@ -1,7 +1,9 @@
 """
 Measured settings: questions, each with a reference solution, and the settings of methods that answer them.
 
-A reference solution is a run at a tolerance at least 100 times tighter than any setting that is compared with it.
+A question is a set of equations with a law of friction, whose amplification is sought. A setting is a method with one
+value of the parameter that varies along its curve of error over time. A reference solution is a run at a tolerance at
+least 100 times tighter than any setting that is compared with it.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -43,28 +45,24 @@ Settings = Mapping[str, Any]  # keyword arguments of a function that computes th
 
 @dataclass(frozen=True)
 class TradeoffQuestion:
-    """Equations to solve, and their reference solution (function, arguments); points, quick: numbers of phase pairs."""
+    """Equations to solve, with their reference solution."""
 
     key: str
     title: str
-    reference_solution: tuple[str, Settings]
-    points: int
-    quick: int
+    reference_solution: tuple[str, Settings]  # import path of a function, and its keyword arguments
+    points: int  # number of phase pairs
+    quick: int  # number of phase pairs with --quick
     seconds: float  # s per phase pair, rough processor time of the reference solution
 
 
 @dataclass(frozen=True)
 class Setting(StatedSetting):
-    """
-    A method with one value of its varied parameter; its error and time are measured as one point of a plot.
+    """A method with one value of its varied parameter; its error and time are measured as one point of a plot."""
 
-    function: import path, called as (scene, phases, **settings). seconds: s per phase pair, rough processor time.
-    against: reference solution if not the question's.
-    """
-
-    function: str
+    function: str  # import path of a function, called as (scene, phases, **settings)
     settings: Settings
-    seconds: float
+    seconds: float  # s per phase pair, rough processor time
+    # Reference solution (function, keyword arguments) of this setting alone; None: that of the question
     against: tuple[str, Settings] | None = None
 
 
@@ -80,14 +78,39 @@ _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SP
 _REFERENCE_SOLUTIONS = {
     question: (REFERENCE, {**law, "tolerance": REFERENCE_SOLUTION_TOLERANCE}) for question, law in _LAWS.items()
 }
-# Equations to solve: key, title, reference solution, phase pairs (usual, --quick), s per phase pair of the solution
-QUESTIONS = (
-    TradeoffQuestion("exact", "exact equations, supremum", _REFERENCE_SOLUTIONS["exact"], 48, 12, 0.006),
-    TradeoffQuestion("small", "small equations, supremum", _REFERENCE_SOLUTIONS["small"], 48, 12, 0.006),
+QUESTIONS = (  # all sets of equations to solve, in the order of the report
     TradeoffQuestion(
-        "regularised", f"exact equations, v_reg = {V_REG_TEXT}", _REFERENCE_SOLUTIONS["regularised"], 12, 3, 0.01
+        key="exact",
+        title="exact equations, supremum",
+        reference_solution=_REFERENCE_SOLUTIONS["exact"],
+        points=48,
+        quick=12,
+        seconds=0.006,
     ),
-    TradeoffQuestion("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
+    TradeoffQuestion(
+        key="small",
+        title="small equations, supremum",
+        reference_solution=_REFERENCE_SOLUTIONS["small"],
+        points=48,
+        quick=12,
+        seconds=0.006,
+    ),
+    TradeoffQuestion(
+        key="regularised",
+        title=f"exact equations, v_reg = {V_REG_TEXT}",
+        reference_solution=_REFERENCE_SOLUTIONS["regularised"],
+        points=12,
+        quick=3,
+        seconds=0.01,
+    ),
+    TradeoffQuestion(
+        key="spatial",
+        title=f"spatial engine model, v_reg = {V_REG_TEXT}",
+        reference_solution=(ENGINE, _SPATIAL),
+        points=6,
+        quick=2,
+        seconds=3.0,
+    ),
 )
 
 
@@ -97,7 +120,7 @@ def list_questions(scene: Scene) -> list[TradeoffQuestion]:
 
 
 def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """Return methods with parameter values to measure for a scene; quick: fewer values of parameters that take long."""
+    """Return the settings to measure for a scene; with `quick`, fewer of those that take long."""
     keys = {question.key for question in list_questions(scene)}
     every = [
         *_reference_settings(scene),
@@ -109,11 +132,11 @@ def list_settings(scene: Scene, quick: bool = False) -> list[Setting]:
 
 
 class _VariedCall(NamedTuple):
-    """Function (import path), argument varied along a curve of error over time, and its other keyword arguments."""
+    """Call of a function of which one argument varies along a curve of error over time."""
 
-    function: str
-    argument: str
-    others: Settings
+    function: str  # import path
+    argument: str  # name of the argument that varies
+    others: Settings  # its other keyword arguments
 
 
 def _make_curve_settings(
@@ -123,8 +146,8 @@ def _make_curve_settings(
     """
     Return the settings of one method, one for each of `values` of the varied argument of its function `call`.
 
-    question, method, parameter: as `StatedSetting` has them. seconds: s, per point, of each or of all. stated: other
-    fields of `Setting`, as `unit` or `against`, by name.
+    question, method, parameter: as `StatedSetting` has them. seconds: rough processor time of a phase pair, one for
+    all values or one for each. stated: other fields of `Setting`, such as `unit` or `against`, by name.
     """
     fields = {"unit": "", "controlled": False, "model_error": False, **stated}
     return [
@@ -137,24 +160,44 @@ def _make_curve_settings(
 
 
 def _reference_settings(scene: Scene) -> Iterator[Setting]:
-    """Yield methods by the equations: error-controlled; single runs; regularized friction, compared with rigid."""
+    """
+    Yield settings of the reference equations.
+
+    They are runs with error control, single runs, and the exact equations with regularized friction, whose error
+    against those with rigid friction is that of the model.
+    """
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
-        controlled, single = _VariedCall(REFERENCE, "tolerance", law), _VariedCall(REFERENCE_RUN, "step_tolerance", law)
-        method = "reference, two runs and an estimate"
         yield from _make_curve_settings(
-            question, method, "tolerance of mu", controlled, powers[1:], 0.003, controlled=True
+            question,
+            method="reference, two runs and an estimate",
+            parameter="tolerance of mu",
+            call=_VariedCall(REFERENCE, "tolerance", law),
+            values=powers[1:],
+            seconds=0.003,
+            controlled=True,
         )
         yield from _make_curve_settings(
-            question, "reference, one run", "tolerance inside a step", single, powers, 0.0015
+            question,
+            method="reference, one run",
+            parameter="tolerance inside a step",
+            call=_VariedCall(REFERENCE_RUN, "step_tolerance", law),
+            values=powers,
+            seconds=0.0015,
         )
-    call = _VariedCall(REFERENCE, "regularization", {"tolerance": 1e-6})
     for speed in DRY_REGULARIZATIONS if has_dry_friction(scene) else ():
         faster = REFERENCE, {"cutoff": speed, "tolerance": REFERENCE_SOLUTION_TOLERANCE}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
-            method = f"v_reg, model error against the {what}"
             yield from _make_curve_settings(
-                "exact", method, "v_reg", call, [speed], 0.004, unit="m/s", model_error=True, against=against
+                "exact",
+                method=f"v_reg, model error against the {what}",
+                parameter="v_reg",
+                call=_VariedCall(REFERENCE, "regularization", {"tolerance": 1e-6}),
+                values=[speed],
+                seconds=0.004,
+                unit="m/s",
+                model_error=True,
+                against=against,
             )
 
 
@@ -163,44 +206,60 @@ def _scipy_settings(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
     # LSODA goes to tighter tolerances because its finest run checks the reference solution.
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
-        call = _VariedCall(SCIPY_FACTORS, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG})
-        values = [10.0**-power for power in powers]
         yield from _make_curve_settings(
-            "regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds
+            "regularised",
+            method=f"SciPy {method}",
+            parameter="relative tolerance of a step",
+            call=_VariedCall(SCIPY_FACTORS, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG}),
+            values=[10.0**-power for power in powers],
+            seconds=seconds,
         )
 
 
 def _engine_settings(quick: bool) -> Iterator[Setting]:
     """Yield settings of Exudyn: runs with error control, then single runs in which one parameter is changed."""
-    parameters = (
+    parameters = (  # name of a curve, what varies along it in words, argument of `run_engine_once`, values
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
         ("contact compliance", PENETRATION_PARAMETER, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
         ("Newton", "relative tolerance of Newton's iteration", "newton", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)),
     )
-    for question, model, tolerances, dearer in (
+    for question, model, tolerances, cost in (  # tolerances: with s per phase pair, which `cost` multiplies
         ("regularised", "translational", {1e-2: 0.35, 1e-3: 0.35, 1e-4: 1.0, 1e-5: 1.8}, 1.0),
         ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
     ):
-        law, method = {"model": model, "regularization": DEFAULT_V_REG}, f"{model} engine, two levels and an estimate"
-        seconds = [dearer * each for each in tolerances.values()]
-        controlled = _VariedCall(ENGINE, "tolerance", law)
+        law = {"model": model, "regularization": DEFAULT_V_REG}
         yield from _make_curve_settings(
-            question, method, "tolerance of mu", controlled, list(tolerances), seconds, controlled=True
+            question,
+            method=f"{model} engine, two levels and an estimate",
+            parameter="tolerance of mu",
+            call=_VariedCall(ENGINE, "tolerance", law),
+            values=list(tolerances),
+            seconds=[cost * each for each in tolerances.values()],
+            controlled=True,
         )
-        for name, parameter, key, values in parameters:
-            method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
-            call = _VariedCall(ENGINE_LEVEL, key, law)
-            yield from _make_curve_settings(question, method, parameter, call, few, 0.25 * dearer)
+        for name, parameter, argument, values in parameters:
+            yield from _make_curve_settings(
+                question,
+                method=f"{model} engine, one run: {name}",
+                parameter=parameter,
+                call=_VariedCall(ENGINE_LEVEL, argument, law),
+                values=values[:: 3 if quick else 1],
+                seconds=0.25 * cost,
+            )
 
 
 def _constant_step_settings(quick: bool) -> Iterator[Setting]:
     """Yield settings of Exudyn's own time integrators at constant time steps."""
     for solver, steps in STEPS_OF_INTEGRATOR.items():
-        call = _VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG})
         few = steps[:: 2 if quick else 1]
-        seconds = [0.25e-3 / step for step in few]
         yield from _make_curve_settings(
-            "regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, unit="s"
+            "regularised",
+            method=f"Exudyn, {solver}",
+            parameter="constant step",
+            call=_VariedCall(CONSTANT_STEP_RUN, "step", {"solver": solver, "v_reg": DEFAULT_V_REG}),
+            values=few,
+            seconds=[0.25e-3 / step for step in few],
+            unit="s",
         )
 
 
@@ -215,8 +274,13 @@ def list_user_settings(models: Sequence[Model]) -> list[Setting]:
         parameter, values = "as it is, beside a tolerance of", [1e-3]
         if "tolerance" in engine_description(model.settings).get("names", ""):
             parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
-        call = _VariedCall(model.amplification, "tolerance", model.settings)
         measured += _make_curve_settings(
-            question, f"user model: {model.title}", parameter, call, values, 1.0, against=against
+            question,
+            method=f"user model: {model.title}",
+            parameter=parameter,
+            call=_VariedCall(model.amplification, "tolerance", model.settings),
+            values=values,
+            seconds=1.0,
+            against=against,
         )
     return measured

@@ -26,9 +26,15 @@ def run_reference_once(
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """Return amplification, (phase pairs, bodies), and mean step, s, by one run of the equations, no error control."""
+    """
+    Return the amplification, (phase pairs, bodies), and the mean step, s, by one run of the reference equations.
+
+    step_tolerance: error allowed within a step; nothing controls the error of the amplification.
+    """
     pairs = check_phases(phases)
-    system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
+    system, demand = prepare_run(
+        scene, equations, regularization, tolerance=1e-6, cutoff=None, rest_condition="consistent"
+    )
     peaks = peaks_at(system, pairs, demand, step_tolerance)
     mu = np.where((peaks.code == SOLVED)[:, None], peaks.value, np.nan) / ground_peak(scene, pairs)[:, None]
     return mu, float(scene.duration / peaks.steps.mean())
@@ -37,14 +43,23 @@ def run_reference_once(
 def run_engine_once(
     scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """Return amplification (M, N), one Exudyn run per phase pair; step: factor on steps; level: numerical settings."""
+    """
+    Return the amplification, (phase pairs, bodies), by one run of Exudyn at each phase pair.
+
+    The run is at one accuracy level, a set of numerical parameters, with its steps multiplied by `step`. level:
+    parameters that are changed, by name of the field of `multibody.Level`.
+    """
     usual = multibody.levels(scene, model, regularization=regularization)[DEFAULT_ENGINE_LEVEL]
     changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
     return _compute_factors(scene, phases, lambda run: run.peak, model, regularization, level=changed)
 
 
 def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
-    """Return translational amplification (M, N) by Exudyn's integrator `solver` at a constant step; NaN if it fails."""
+    """
+    Return the amplification of the translational model, (phase pairs, bodies), by Exudyn at a constant step, s.
+
+    solver: name of Exudyn's integrator. A run that fails has NaN.
+    """
 
     def largest(run: Any) -> Array:
         """Return the largest absolute acceleration of every body over its motion, m/s^2."""
@@ -58,7 +73,11 @@ def run_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: flo
 def _compute_factors(
     scene: Scene, phases: ArrayLike, peak: Callable[[Any], Array], model: str, v_reg: float, **how: Any
 ) -> Array:
-    """Return the amplification by one run of Exudyn at each of M phase pairs, (M, N); NaN where a run ends early."""
+    """
+    Return the amplification, (phase pairs, bodies), by one run of Exudyn at each phase pair; NaN where it ends early.
+
+    peak: returns the largest acceleration of each body from a run. how: numerical parameters of the run.
+    """
     pairs = check_phases(phases)
     runs = [multibody.single_run(scene, phase, model, v_reg, **how) for phase in pairs]
     nothing = np.full(len(scene.bodies), np.nan)

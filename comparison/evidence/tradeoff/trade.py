@@ -14,7 +14,7 @@ from comparison.result_types import Array, require, require_size, result
 from reference.problem.scene import MAX_BODIES
 
 FILE = "tradeoff.json"  # name of the file with the measured error and compute time of every method
-SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # name of the format of tradeoff.json
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"  # states in the file what it is
 MEANINGS = {  # descriptions of the variables in the netCDF file of all measured values
     "mu": "amplification factor (5.1)",
     "reference_solution": "the same by the reference solution of the question",
@@ -127,7 +127,7 @@ def mark_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[
         return entry.seconds, math.inf if error is None else error
 
     def is_on_front(entry: MeasuredSetting, body: int) -> bool:
-        """Return whether no method and value for these equations beats this in time and error (`is_pareto_optimal`)."""
+        """Return whether no setting for the same equations is both faster and more accurate for a body."""
         rivals = [time_and_error(other, body) for other in complete if other.question == entry.question]
         return entry in complete and is_pareto_optimal(time_and_error(entry, body), rivals)
 
@@ -142,8 +142,7 @@ class TradeFile:
     trades: Annotated[list[SceneTrade], "one per scene"]
 
 
-# tradeoff.json: its content, what it is called in messages, the command that writes it
-STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
+STORED = StoredFile(name=FILE, kind=TradeFile, what="a measured trade", command="phase-resonance tradeoff")
 
 
 def load_trades(folder: Path) -> list[SceneTrade] | None:
@@ -154,16 +153,21 @@ def load_trades(folder: Path) -> list[SceneTrade] | None:
 
 @dataclass(frozen=True)
 class MeasuredTrade:
-    """Measured error against compute time of one scene, and amplification by method and value, phase pair and body."""
+    """Measured error against compute time of one scene, and the values that it was made from."""
 
     trade: SceneTrade
-    values: xr.Dataset
+    values: xr.Dataset  # amplification and its reference by setting, phase pair and body, as of `label_values`
 
 
 def label_values(
     entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
 ) -> xr.Dataset:
-    """Return amplification, its reference, error estimate by method and value, phase pair, body; NaN: not computed."""
+    """
+    Return a data set of all computed values by setting, phase pair ("point") and body, NaN where none was computed.
+
+    values: by the names in MEANINGS, an array (phase pairs, bodies) for each setting in `entries`. phases: rad, (phase
+    pairs, 2); a setting may have been computed at the first of them only.
+    """
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}
     for name, rows in values.items():

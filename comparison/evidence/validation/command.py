@@ -80,7 +80,7 @@ def compare_folder(folder: Path) -> Validation:
     found += [_compare_file(LARGE_SWING_FILE, pendulum.compare_large_swings, measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": describe_provenance()}
-    return Validation(*join_findings(found), run)
+    return Validation(**join_findings(found)._asdict(), run=run)
 
 
 def _compare_file(file: str, compare: Callable[[Any], ExperimentFindings], measured: Any) -> ExperimentFindings:

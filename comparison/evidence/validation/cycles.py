@@ -12,17 +12,18 @@ from comparison.result_types import Array
 CYCLE_SAMPLES = 250  # number of samples in each cycle of a folded run; the measurements have as many
 MIN_CYCLES = 3  # A measured run with fewer whole cycles is refused.
 BASE_HARMONICS = 6  # number of harmonics of the base frequency that are fitted to the measured base motion
-MAX_UNEXPLAINED_SHARE = 0.1  # rms share of base motion beside fitted harmonics: refused if larger; published: 0.003
+# A run is refused if the rms of what the fitted harmonics leave of the base motion is more than this share of its rms.
+MAX_UNEXPLAINED_SHARE = 0.1  # The published runs have 0.003.
 MAX_DRIFT_SHARE = 0.1  # Runs whose plate's mean shifts between cycles by a larger share of its range are refused.
 REST_SPEED = 2.0  # mm/s, speed below which the plate counts as at rest
 VELOCITY_HALF_WIDTH = 4  # A velocity is computed from the positions this many samples before and after.
 
 
 class Cycles(NamedTuple):
-    """Measured run of the frame cut into J cycles, (J, samples), mm; each starts at the base's largest position."""
+    """Measured run of the frame cut into cycles, each of which starts at the largest position of the base."""
 
     run: FrameRun
-    motions: Array
+    motions: Array  # mm, positions of the plate, (cycles, CYCLE_SAMPLES)
     frequency: float  # Hz, frequency of the base
     amplitude: float  # mm, amplitude of the base's fundamental
     second: complex  # mm, complex amplitude of the base's second harmonic, relative to the fundamental's phase
@@ -36,15 +37,21 @@ class Cycles(NamedTuple):
 
 
 def fold_run(run: FrameRun) -> Cycles:
-    """Return a measured run cut into whole cycles of the base motion's fundamental frequency."""
+    """
+    Return a measured run cut into whole cycles of the base motion's fundamental frequency.
+
+    Raises SceneError if the base is not periodic, or if the plate does not repeat its motion.
+    """
+    # The peak of the spectrum is a first guess of the frequency. The guess is refined so that harmonics of the base
+    # leave as little as possible of its motion. The phase of the fundamental then tells where each cycle begins.
     time = run.time - run.time[0]
     spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))
     first = float(np.argmax(spectrum)) / (time[-1] + time[1])
 
     def fit_harmonics(frequency: float) -> tuple[Array, Array]:
         """Return Fourier coefficients fitted to the base motion for a fundamental frequency, Hz, and the residual."""
-        turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(BASE_HARMONICS + 1))
-        terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
+        angles = 2.0 * np.pi * frequency * np.outer(time, np.arange(BASE_HARMONICS + 1))
+        terms = np.hstack([np.cos(angles), np.sin(angles[:, 1:])])
         factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]
         return factors, run.base - terms @ factors
 
@@ -61,7 +68,7 @@ def fold_run(run: FrameRun) -> Cycles:
         )
     harmonics = factors[1 : BASE_HARMONICS + 1] - 1j * factors[BASE_HARMONICS + 1 :]
     begin = np.angle(harmonics[0])
-    phase = frequency * time + begin / (2.0 * np.pi)
+    phase = frequency * time + begin / (2.0 * np.pi)  # number of cycles since the base was at its largest position
     whole = range(math.ceil(phase[0]), math.floor(phase[-1]))
     if len(whole) < MIN_CYCLES:
         rule = f"y must have {MIN_CYCLES} whole cycles of the base, not {len(whole)}"
@@ -84,8 +91,8 @@ def measure_cycle(motion: Array, frequency: float) -> Array:
     """
     Return the quantities of one cycle of the plate's motion (samples,), mm, in the order and units of `frame.NAMES`.
 
-    The plate starts and stops where its speed passes REST_SPEED, before and behind each of its two largest speeds; the
-    phases are from the turn of the base on, means of both directions.
+    The plate starts and stops where its speed passes REST_SPEED, before and after its largest speed in each direction.
+    Phases count from the largest position of the base; each is the mean over both directions, half a cycle apart.
     """
     speed = (
         (np.roll(motion, -VELOCITY_HALF_WIDTH) - np.roll(motion, VELOCITY_HALF_WIDTH))
@@ -98,10 +105,9 @@ def measure_cycle(motion: Array, frequency: float) -> Array:
     ends = []
     for sign in (-1.0, 1.0):
         top = int(np.argmax(sign * speed))
-        turned = np.roll(sign * speed, -top)
-        ends.append(
-            [top - _find_end_of_motion(turned[np.arange(0, -CYCLE_SAMPLES, -1)]), top + _find_end_of_motion(turned)]
-        )
+        onward = np.roll(sign * speed, -top)  # speed from its largest value on
+        backward = onward[np.arange(0, -CYCLE_SAMPLES, -1)]
+        ends.append([top - _find_end_of_motion(backward), top + _find_end_of_motion(onward)])
     starts, stops = (np.array(ends).T - [0.0, 0.5 * CYCLE_SAMPLES]) * 360.0 / CYCLE_SAMPLES
     moving = (stops - starts).sum() / 360.0
     middles = [np.angle(np.exp(1j * np.radians(phases)).sum(), deg=True) % 360.0 for phases in (starts, stops)]

@@ -36,14 +36,14 @@ def make_experiment_panels(table: Validation) -> list[Panel]:
 
 
 # Results field with the comparisons that the command left next to the report
-FOUND = make_stored_field(STORED, "validation", "measured motions, compared with what both sides compute")
+FOUND = make_stored_field(STORED, name="validation", meaning="measured motions, compared with what both sides compute")
 FEATURE = Feature(  # comparison with measured motions: results field and report section
     "validation",
-    (FOUND,),
+    fields=(FOUND,),
     section=Section(
         "Measured motions",
-        STORED.word_how_to_make(" FOLDER"),
-        lambda report: {
+        absent=STORED.word_how_to_make(" FOLDER"),
+        context=lambda report: {
             "validation_panels": make_experiment_panels,
             "validation_verdicts": MEANING_OF_VERDICT,
             "validation_colors": STYLE_CLASSES,

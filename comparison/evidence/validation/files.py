@@ -53,12 +53,12 @@ PENDULUM_SOURCE = (  # download place of the measured pendulum swings
 
 
 class FrameRun(NamedTuple):
-    """One measured run of the shaken frame: mass of its disc, kg; T instants, s; motions of top plate and base, mm."""
+    """One measured run of the shaken frame."""
 
-    weight: float
-    time: Array
-    plate: Array
-    base: Array
+    weight: float  # kg, mass of the disc that presses on the plate
+    time: Array  # s, instants
+    plate: Array  # mm, position of the top plate at each instant
+    base: Array  # mm, position of the base at each instant
 
     @property
     def name(self) -> str:
@@ -74,11 +74,11 @@ class FreeSwing(NamedTuple):
 
 
 class MeasuredFiles(NamedTuple):
-    """Measurements found in a folder: list of frame runs; pendulum's decay and large swings, each None if absent."""
+    """Measurements found in a folder; what it does not hold is empty or None."""
 
     runs: list[FrameRun]
-    decay: FreeSwing | None
-    large: FreeSwing | None
+    decay: FreeSwing | None  # free decay of the pendulum
+    large: FreeSwing | None  # large swings of the pendulum
 
 
 def read_folder(folder: Path) -> MeasuredFiles:
@@ -116,7 +116,7 @@ def read_folder(folder: Path) -> MeasuredFiles:
 
 
 def _read_frame_run(workers: Workers, grams: int, plate: Path, base: Path) -> FrameRun:
-    """Return a measured run of the frame, read from the files of its plate and base; grams: mass of its disc, g."""
+    """Return a measured run of the frame with a disc of `grams`, read from the files of its plate and base."""
     x, y = (_read_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
     time = _check_series(plate, "t", x["t"])
     motion = _check_series(plate, "x", x["x"], len(time), "mm")
@@ -139,7 +139,7 @@ def _read_swing(
     angle = _check_series(file, second, angles, len(time), "rad")
     if np.ptp(angle) == 0.0:
         raise make_file_error(file, f"{second} must move: every sample is the same")
-    return FreeSwing(time, angle - np.pi)
+    return FreeSwing(time, angle - np.pi)  # The published angles are pi at the lowest position.
 
 
 def select_decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -233,7 +233,11 @@ def _rule_of_column(name: str) -> str:
 
 
 def _check_series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
-    """Return a column of a file as floats; raise SceneError if it is faulty. count: its length, None for the time."""
+    """
+    Return a column of a file as floats; raise SceneError if it is faulty.
+
+    count, unit: number of instants and unit of a column of motions; the column of times has neither.
+    """
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
         raise make_file_error(file, _rule_of_column(name))
@@ -264,7 +268,7 @@ def _refuse_time(file: Path, name: str, series: Array) -> None:
 
 
 def make_file_error(file: Path | str, rule: str) -> SceneError:
-    """Return the error for a faulty measured file, named however long its path is; rule: what it must be, in words."""
+    """Return the error for a faulty measured file, which names it however long its path is; `rule`: what it must be."""
     if isinstance(file, Path) and file.suffix == ".mat":
         return SceneError("command line", "FOLDER", str(file.parent), f"{file.name}: {rule}")
     return SceneError("command line", "FOLDER", str(file), rule)

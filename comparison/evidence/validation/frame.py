@@ -1,18 +1,20 @@
 """
 Shaken frame: runs predicted with friction that is fitted to other runs.
 
-By the constant law one friction ratio is fitted to the motion of one run, and all others are predicted. By friction of
-the load the ratio is a power of the load, as `load_exponent` has it: it is fitted to the motions of two runs, and the
-others are predicted.
+The friction ratio is the friction force over the weight of a disc that presses on the plate; runs differ in this
+weight, the load. By the constant law, one ratio is fitted to the motion of one run, and all others are predicted. By
+load-dependent friction, the ratio is a power of the load (`load_exponent`): it is fitted to the motions of two runs,
+and the others are predicted.
 
 With y the motion of the base, z that of the top plate, both absolute, and r w g the friction of the disc of mass w,
 
     M z'' + C z' + K z + r w g sign(z') = K y + C y'
 
-is the platform on the isolator, shaken by -(K y + C y') / M. Viscous damping is friction that grows with the speed,
-friction coefficient f_0 + C v / (m_sum g), the velocity-dependent law far below its limit. A second body ten times as
-heavy on a link so soft that it does nothing lends its weight: the sphere is then eleven times as large and as good
-as a parabola, as a spring is.
+is the equation of the platform on the isolator, shaken by the acceleration -(K y + C y') / M. Viscous damping becomes
+friction that grows with the speed: the friction coefficient is f_0 + C v / (m_sum g), which is the velocity-dependent
+law far below its limit. A second body, ten times as heavy, presses on the platform by a link so soft that it exerts no
+other force. The sphere with the stiffness of the frame is then eleven times as large, so large that it acts as a
+spring.
 """
 
 import math
@@ -45,7 +47,7 @@ UNITS = ("mm", "mm", table.CYCLE, table.DEGREES, table.DEGREES)
 
 
 class Setup(NamedTuple):
-    """Inputs with which a frame run is computed: mass, stiffness, damping, base motion, weight and friction of disc."""
+    """Inputs with which a run of the frame is computed; the defaults are those that the authors of the runs state."""
 
     mass: float = 3.0799  # kg, mass of the plate
     stiffness: float = 1191.0  # N/m, stiffness of the frame
@@ -69,11 +71,15 @@ REFITTED_INPUTS = ("mass", "stiffness", "damping", "scale", "second")
 
 
 def make_frame_scene(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
-    """Return a scene equivalent to a run of the frame, and the phases of its two harmonics, rad."""
+    """
+    Return a scene equivalent to a run of the frame, and the phases of its two harmonics, rad.
+
+    The module's docstring derives it. Here base and ground motions are complex amplitudes of both harmonics.
+    """
     weight = (1.0 + SHAKER_MASS_RATIO) * setup.mass * GRAVITY
-    base = setup.scale * np.array([cycles.amplitude, setup.second * cycles.second]) * 1e-3
-    turns = 2j * np.pi * cycles.frequency * np.array([1.0, 2.0])
-    ground = -(setup.stiffness + setup.damping * turns) * base / setup.mass
+    base = setup.scale * np.array([cycles.amplitude, setup.second * cycles.second]) * 1e-3  # m
+    rates = 2j * np.pi * cycles.frequency * np.array([1.0, 2.0])  # i omega
+    ground = -(setup.stiffness + setup.damping * rates) * base / setup.mass  # m/s^2
     mu = setup.ratio * setup.disc * cycles.run.weight * GRAVITY / weight
     scene = {
         "title": f"Shaken frame, {1e3 * cycles.run.weight:g} g",
@@ -124,11 +130,17 @@ def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
 
 
 def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
-    """Return the inputs with those named fitted by the equations to the mean cycle; their scatter, (cycles, names)."""
+    """
+    Return `setup` with the inputs in `names` fitted to the mean measured cycle, and their scatter over the cycles.
+
+    The motions are computed by the equations. The scatter has a row for each measured cycle, a column for each name.
+    """
 
     def curve(at: Setup) -> Array:
         """Return the motion of the plate in the last computed cycle with the inputs `at`, mm."""
         return read_last_cycle(compute_frame_motion(EQUATIONS, cycles, at), cycles.frequency)
+
+    # Gauss-Newton iteration: a linear least-squares fit with slopes by difference quotients, again and again.
 
     for _ in range(12):
         nearby = [setup._replace(**{name: getattr(setup, name) + DIFFERENCE_STEP}) for name in names]
@@ -147,8 +159,9 @@ class FittedRun(NamedTuple):
     """
     Measured run of the frame with the inputs of its computation, the friction ratio among them fitted to its motion.
 
-    setup: fitted inputs. spread: uncertainty of the ratio, from its scatter over the cycles. changed: inputs fitted
-    with each of REFITTED_INPUTS changed by its uncertainty. shifted: inputs fitted with the first run's base scale.
+    setup: fitted inputs. spread: uncertainty of the ratio, from its scatter over the cycles. changed: for each of
+    REFITTED_INPUTS, the inputs that are fitted after it was changed by its uncertainty. shifted: inputs that are
+    fitted with the factor on the base motion fitted as well, or taken over from another run.
     """
 
     cycles: Cycles
@@ -164,7 +177,11 @@ class FittedRun(NamedTuple):
 
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
-    """Return a run with friction ratio fitted; `shifted`: base motion's factor from `shift`, if None fitted as well."""
+    """
+    Return a run with its fitted friction ratio; the fits begin at the inputs `start`.
+
+    shift: inputs whose factor on the base motion enters `FittedRun.shifted`; if None, this factor is fitted as well.
+    """
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = table.COVERAGE_FACTOR * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + INPUT_UNCERTAINTIES[name][0]} for name in REFITTED_INPUTS)
@@ -178,6 +195,8 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedR
 
 def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
     """Compare all frame runs with predictions by one friction ratio, and by load-dependent friction if possible."""
+    # The first run is that to which the ratio is fitted. `own` has, for each run, the inputs with the ratio fitted to
+    # it alone: they serve to find the cause of a difference.
     folded = [fold_run(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST_FITTED_WEIGHT) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
@@ -195,7 +214,8 @@ def compare_frame(runs: Sequence[FrameRun]) -> table.ExperimentFindings:
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
     if any(_is_sliding(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
-    return table.join_findings([table.ExperimentFindings([], inputs, [], [], []), *parts])
+    of_inputs = table.ExperimentFindings(quantities=[], inputs=inputs, facts=[], residuals=[], curves=[])
+    return table.join_findings([of_inputs, *parts])
 
 
 def _is_sliding(cycles: Cycles) -> bool:
@@ -210,7 +230,12 @@ def _word_fitted_friction_ratio(fitted: FittedRun) -> str:
 
 
 def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> table.ExperimentFindings:
-    """Compare frame runs with predictions by friction that is a power of the load, fitted to two of the runs."""
+    """
+    Compare frame runs with predictions by friction that is a power of the load, fitted to two of the runs.
+
+    first: the run to which constant friction was fitted. rest: the other runs, with the inputs fitted to each alone.
+    """
+    # The ratio of a run is interpolated between those of the two fitted runs, linearly in logarithms of ratio and load.
     sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND_FITTED_WEIGHT))
     second = fit_run(chosen, first.setup, first.shifted)
@@ -221,12 +246,13 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
         f"frame: the friction ratios fitted to {first.cycles.run.name} and to {second.cycles.run.name} "
         f"grow as the load to the power {exponent:.3f}"
     )
-    found = [table.ExperimentFindings([], [_word_fitted_friction_ratio(second)], [fact], [], [])]
+    inputs = [_word_fitted_friction_ratio(second)]
+    found = [table.ExperimentFindings(quantities=[], inputs=inputs, facts=[fact], residuals=[], curves=[])]
     for cycles, own in rest if len(rest) > 1 else ():
-        share = (math.log(cycles.run.weight) - begin) / (end - begin)
+        share = (math.log(cycles.run.weight) - begin) / (end - begin)  # 0 at the first fitted load, 1 at the second
 
         def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
-            """Return `setup`, friction ratio a power of load: low at first fitted load (share 0), high at second."""
+            """Return `setup` with the ratio at this load, if it is `low` at the first and `high` at the second one."""
             return setup._replace(ratio=low * (high / low) ** share)
 
         pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
@@ -244,11 +270,21 @@ def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> 
 def _compare_run(
     cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
 ) -> table.ExperimentFindings:
-    """Compare a run; `varied` inputs give uncertainty, `other` (base factor fitted) and `own` (ratio fitted) causes."""
+    """
+    Compare a measured run with what the inputs `setup` give.
+
+    use: "calibrated" or "predicted". varied: inputs changed by their uncertainties, which give u_input. other, own:
+    inputs with the factor on the base motion fitted, and with the ratio fitted to this run; they tell the cause of a
+    difference. law: friction law, in words, as a suffix of the run's name.
+    """
     title = cycles.run.name + law
     found = [measure_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.MeasuredData(
-        NAMES, UNITS, [use] * 5, np.mean(found, axis=0), table.COVERAGE_FACTOR * np.std(found, axis=0, ddof=1)
+        names=NAMES,
+        units=UNITS,
+        use=[use] * 5,
+        values=np.mean(found, axis=0),
+        uncertainty=table.COVERAGE_FACTOR * np.std(found, axis=0, ddof=1),
     )
     motions = {side: compute_frame_motion(side, cycles, setup) for side in table.SIDES}
     answers = {side: read_quantities(cycles, motion) for side, motion in motions.items()}
@@ -280,9 +316,9 @@ def _compare_run(
     residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(CYCLE_SAMPLES) * 360.0 / CYCLE_SAMPLES
     return table.ExperimentFindings(
-        rows,
-        [],
-        [fact],
-        [residual],
-        table.make_plot_curves(title, axes, {name: (turn, y) for name, y in lines.items()}),
+        quantities=rows,
+        inputs=[],
+        facts=[fact],
+        residuals=[residual],
+        curves=table.make_plot_curves(title, axes, {name: (turn, y) for name, y in lines.items()}),
     )

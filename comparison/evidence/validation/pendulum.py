@@ -30,12 +30,14 @@ ANGLE_HALF_WIDTH, MIN_HALF_SWINGS = 0.1, 4
 
 def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     """Compare turning points and half period of a pendulum that swings to rest with computed ones."""
-    step = float(np.min(np.diff(np.unique(swing.angle))))
+    # The turning points are fitted by a line: every half swing loses the same angle, and the rest position is not quite
+    # the middle, so that turns on both sides differ by its offset. The measured angles are then freed of the offset.
+    step = float(np.min(np.diff(np.unique(swing.angle))))  # rad, step of the encoder that measured the angles
     instants, turns = _find_turns(swing, TURN_ENCODER_STEPS * step)
     numbers = np.arange(SHOWN_TURNING_POINTS[-1] + 1)
     if len(turns) < len(numbers):
         raise make_file_error(DECAY_FILE, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
-    sides = (-1.0) ** numbers
+    sides = (-1.0) ** numbers  # 1 on the side of the first turning point, -1 on the other
     # Columns of the fit, by what they multiply: first angle, loss per half swing, offset of the rest position
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
     along, fitted = np.sign(turns[0]) * sides * turns[: len(numbers)], slice(0, FITTED_HALF_SWINGS + 1)
@@ -44,28 +46,29 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     inverse = np.linalg.inv(terms[fitted].T @ terms[fitted])
     scatter = table.COVERAGE_FACTOR * float(np.sqrt(residuals @ residuals / (FITTED_HALF_SWINGS - 2) * inverse[1, 1]))
     periods, reading = np.diff(instants)[: 2 * PERIOD_HALF_SWINGS], table.COVERAGE_FACTOR * step / np.sqrt(12.0)
+    # Fitted inputs: half period, s; angle lost per half swing, rad; first angle, rad
     nominal = np.array([periods[:PERIOD_HALF_SWINGS].mean(), loss, start])
     uncertain = np.array([_compute_uncertainty_of_mean(periods[:PERIOD_HALF_SWINGS]), scatter, reading])
     sizes = 1e3 * (along - middle * sides)
     data = table.MeasuredData(
-        [
+        names=[
             *(f"turning point {number}" for number in SHOWN_TURNING_POINTS),
             f"half period of swings {PERIOD_HALF_SWINGS + 1} to {2 * PERIOD_HALF_SWINGS}",
         ],
-        [*["mrad"] * len(SHOWN_TURNING_POINTS), "ms"],
-        [
+        units=[*["mrad"] * len(SHOWN_TURNING_POINTS), "ms"],
+        use=[
             *("calibrated" if number <= FITTED_HALF_SWINGS else "predicted" for number in SHOWN_TURNING_POINTS),
             "predicted",
         ],
-        np.array([*sizes[list(SHOWN_TURNING_POINTS)], 1e3 * periods[PERIOD_HALF_SWINGS:].mean()]),
-        1e3
+        values=np.array([*sizes[list(SHOWN_TURNING_POINTS)], 1e3 * periods[PERIOD_HALF_SWINGS:].mean()]),
+        uncertainty=1e3
         * np.array(
             [*[reading] * len(SHOWN_TURNING_POINTS), _compute_uncertainty_of_mean(periods[PERIOD_HALF_SWINGS:])]
         ),
     )
 
     def read(motion: Trajectory) -> Array:
-        """Return a computed motion's SHOWN_TURNING_POINTS, mrad, and mean half period after the fitted swings, ms."""
+        """Return the quantities in `data` as a computed motion has them: turning points, mrad, and half period, ms."""
         passed, angles = _compute_turns(motion)
         return 1e3 * np.array(
             [
@@ -75,7 +78,7 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
         )
 
     def compute(side: str, values: Array) -> Trajectory:
-        """Return the motion by one code (side); values: half period, s; angle lost per half swing, first angle, rad."""
+        """Return the motion by one code (side) with the inputs `values`, in the order of `nominal`."""
         half, loss, start = values.tolist()
         return _compute_half_swings(side, half, 0.5 * loss, start, SHOWN_TURNING_POINTS[-1] + 2.5)
 
@@ -101,11 +104,13 @@ def compare_decay(swing: FreeSwing) -> table.ExperimentFindings:
     given = [
         table.word_input(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named
     ]
-    return table.ExperimentFindings(rows, given, [fact], [], curves)
+    return table.ExperimentFindings(quantities=rows, inputs=given, facts=[fact], residuals=[], curves=curves)
 
 
 def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     """Compare half periods of a pendulum at large angles with those computed from its half period at a small one."""
+    # A half period and the amplitude of its swing are read between passages of the lowest position. Without friction,
+    # half period / half period for vanishing angle = K(sin^2(amplitude / 2)) / (pi / 2), with the elliptic integral K.
     passages = _find_passage_times(swing)
     sizes = np.array([np.abs(swing.angle[(swing.time > a) & (swing.time < b)]).max() for a, b in pairwise(passages)])
     periods = np.diff(passages)
@@ -120,17 +125,24 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
     at_rest = [0.5 * np.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) for angle in (FITTED_ANGLE, REFITTED_ANGLE)]
     (half, other), scatter = values[-2:] * at_rest, float(spreads[-2] * at_rest[0])
     names = [f"half period at {angle:g} rad" for angle in PREDICTED_ANGLES]
-    data = table.MeasuredData(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
+    data = table.MeasuredData(
+        names=names,
+        units=["ms"] * 3,
+        use=["predicted"] * 3,
+        values=1e3 * values[:-2],
+        uncertainty=1e3 * spreads[:-2],
+    )
 
     def compute(side: str, half: float, equations: str = "exact") -> table.ComputedValues:
-        """Return half periods at PREDICTED_ANGLES, ms, by one code (side); half: half period for vanishing angle, s."""
+        """Return the half periods at PREDICTED_ANGLES, ms, by one code, if that for vanishing angle is `half`, s."""
         motions = [_compute_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in PREDICTED_ANGLES]
         parts = [table.read_motion_values(each, _read_half_period, 1) for each in motions]
         return table.ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in table.SIDES}
-    again, varied, small = (compute(EQUATIONS, *each).values for each in ((other,), (half + scatter,), (half, "small")))
-
+    again = compute(EQUATIONS, other).values
+    varied = compute(EQUATIONS, half + scatter).values
+    small = compute(EQUATIONS, half, "small").values
     gone = f"gone with the half period fitted at {REFITTED_ANGLE} rad"
 
     def explain(k: int, allowed: float) -> str:
@@ -149,15 +161,18 @@ def compare_large_swings(swing: FreeSwing) -> table.ExperimentFindings:
         s: (np.array(PREDICTED_ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return table.ExperimentFindings(
-        rows, [given], [fact], [], table.make_plot_curves("pendulum, large angles", axes, drawn)
-    )
+    curves = table.make_plot_curves("pendulum, large angles", axes, drawn)
+    return table.ExperimentFindings(quantities=rows, inputs=[given], facts=[fact], residuals=[], curves=curves)
 
 
 def _compute_half_swings(
     side: str, half: float, friction: float, start: float, swings: float, equations: str = "exact"
 ) -> Trajectory:
-    """Return the motion by one code (side) over `swings` half periods `half`, s, from rest at angle `start`, rad."""
+    """
+    Return the motion of a pendulum let go at the angle `start`, rad, as one code (side) computes it.
+
+    half: half period for vanishing angle, s. friction: friction coefficient. swings: duration in half periods.
+    """
     scene = {
         "title": "Swinging pendulum",
         "name": "pendulum",
@@ -172,7 +187,12 @@ def _compute_half_swings(
 
 
 def _find_turns(swing: FreeSwing, back: float) -> tuple[Array, Array]:
-    """Return instants, s, and angles, rad, of turns after which the angle goes back by > `back`, and final rest."""
+    """
+    Return the instants, s, and angles, rad, of the turning points of a measured swing, and of its end.
+
+    A turning point counts if the angle then goes back by more than `back`, rad.
+    """
+    # `best` is the farthest angle of this half swing, held from the instant `first` to `last`; `way` is its direction.
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
     for time, angle in zip(swing.time, swing.angle):
@@ -204,7 +224,11 @@ def _find_passage_times(swing: FreeSwing) -> Array:
 
 
 def _fit_half_period(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
-    """Return half period at amplitude `angle`, uncertainty: line fitted over squares of nearby amplitudes `sizes`."""
+    """
+    Return the half period at an amplitude, with its uncertainty, s.
+
+    It is read from a line that is fitted to the half periods of nearby amplitudes over the squares of these.
+    """
     near = np.abs(sizes - angle) < ANGLE_HALF_WIDTH
     line = np.polyfit(sizes[near] ** 2 - angle**2, periods[near], 1)
     return float(line[1]), _compute_uncertainty_of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
@@ -222,7 +246,12 @@ def _read_half_period(motion: Trajectory) -> Array:
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
-    """Return instants, s, and angle sizes, rad, of a computed motion's turns and end, filled up with NaN."""
+    """
+    Return the instants, s, and the sizes of the angles, rad, of a computed motion's turning points and of its end.
+
+    There are as many as SHOWN_TURNING_POINTS need; those after the end of the motion are NaN.
+    """
+    # Between two passages of the lowest point lies one turning point, to alternate sides.
     place, end = interpolate_platform(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_find_zeros(motion), end]):

@@ -146,8 +146,12 @@ class Validation:
         return count_verdicts(each.sides[side].verdict for each in self.quantities for side in JUDGED_SIDES)
 
 
-# File of the comparisons: name, content, content in words, command that writes it
-STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
+STORED = StoredFile(  # file of the comparisons, which the command writes
+    name="validation.json",
+    kind=Validation,
+    what="a table of measured quantities",
+    command="phase-resonance validation",
+)
 
 
 def find_worse_side(each: MeasuredQuantity) -> str:
@@ -185,7 +189,7 @@ class ComputedValues(NamedTuple):
 
 
 class ExperimentFindings(NamedTuple):
-    """Findings of one experiment: compared quantities, inputs and facts in words, rms differences, curves to plot."""
+    """Findings of one experiment, in fields that mean the same as those of `Validation`."""
 
     quantities: list[MeasuredQuantity]
     inputs: list[str]
@@ -200,13 +204,13 @@ def join_findings(parts: Sequence[ExperimentFindings]) -> ExperimentFindings:
 
 
 class MeasuredData(NamedTuple):
-    """Measured quantities: names, units, use (calibrated or predicted), values and expanded uncertainties."""
+    """Measured quantities of one experiment; every field has an element for each."""
 
     names: Sequence[str]
     units: Sequence[str]
-    use: Sequence[str]
+    use: Sequence[str]  # "calibrated" if an input is fitted to the quantity or its run, otherwise "predicted"
     values: Array
-    uncertainty: Array
+    uncertainty: Array  # expanded uncertainties
 
 
 def compute_released_motion(
@@ -218,7 +222,11 @@ def compute_released_motion(
     tolerance: float,
     equations: str = "exact",
 ) -> Trajectory:
-    """Return the motion by one code (side) of N bodies let go at `place` (N,), m along x; tolerance: Exudyn's."""
+    """
+    Return the motion, by one code (side), of bodies that are let go from rest at the positions `place`, m along x.
+
+    regularization: v_reg of Exudyn and of the equations with its friction. tolerance: relative error asked of Exudyn.
+    """
     start = np.column_stack([place, np.zeros_like(place)])
     initial = State(start, np.zeros_like(start))
     if side == ENGINE:
@@ -228,7 +236,11 @@ def compute_released_motion(
 
 
 def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
-    """Return `count` quantities read from a computed motion by `read`, with numerical errors; NaN if it ended early."""
+    """
+    Return the quantities that `read` reads from a computed motion, with their numerical errors.
+
+    All `count` of them are NaN if the motion ended early.
+    """
     nothing = np.full(count, np.nan)
     if motion.status not in FULL_LENGTH_OUTCOMES or motion.accuracy is None:
         return ComputedValues(nothing, nothing)
@@ -238,7 +250,7 @@ def read_motion_values(motion: Trajectory, read: Callable[[Trajectory], Array], 
 
 
 def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
-    """Return in words an input of the computations: name, value, uncertainty, unit and source."""
+    """Return a phrase that states an input of the computations with its uncertainty and source."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
@@ -250,10 +262,11 @@ def compare_quantities(
     explain: Callable[[int, float], str],
 ) -> list[MeasuredQuantity]:
     """
-    Return each measured quantity of an experiment compared with computed ones; varied: results with changed inputs.
+    Return each measured quantity of an experiment, compared with those that the codes compute.
 
-    answers: quantities by code. varied: by the equations, with each input changed by its uncertainty; u_input is the
-    root of the sum of the squared changes. explain: returns the cause why quantity k differs by more than allowed.
+    answers: computed quantities, by code. varied: the same by the equations, for each input after it was changed by
+    its uncertainty; u_input is the root of the sum of the squared changes. explain: called with the index of a
+    quantity whose difference is larger than allowed, and with what is allowed; returns the cause in words.
     """
     rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
@@ -267,9 +280,20 @@ def compare_quantities(
             if verdict == NOT_MET and side != SMOOTHED:
                 cause = explain(k, allowed)
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
-            sides[side] = SideComparison(value, off, numerical, limit, verdict)
-        measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
-        rows.append(MeasuredQuantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
+            sides[side] = SideComparison(value=value, error=off, numerical=numerical, validation=limit, verdict=verdict)
+        rows.append(
+            MeasuredQuantity(
+                experiment=experiment,
+                name=name,
+                unit=unit,
+                use=use,
+                measured=float(data.values[k]),
+                data=float(data.uncertainty[k]),
+                inputs=float(inputs[k]),
+                cause=cause,
+                sides=sides,
+            )
+        )
     return rows
 
 
