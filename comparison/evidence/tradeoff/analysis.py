@@ -20,6 +20,7 @@ from comparison.result_types import Array
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
+from comparison.study.costs import scale_seconds
 from comparison.study.models import Model
 from comparison.study.user_models import engine_description
 from comparison.wording import word_exception
@@ -162,8 +163,8 @@ class TradeOff:
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
-        """Return tasks that call a function at all phase pairs; seconds: processor time of a pair, 20 s of motion."""
-        count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
+        """Return tasks that call a function at all phase pairs; seconds: processor time of one in the usual scene."""
+        count, each = question.quick if self.quick else question.points, scale_seconds(seconds, scene)
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
         limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}
