@@ -40,9 +40,14 @@ def estimate_wall_seconds(seconds: Sequence[float], jobs: int) -> float:
     return max(sum(seconds) / jobs, max(seconds, default=0.0))
 
 
+def scale_seconds(seconds: float, scene: Scene) -> float:
+    """Return the rough processor time, s, of a phase pair of `scene` that takes `seconds` in the usual scene."""
+    return seconds * scene.duration / USUAL_DURATION * len(scene.bodies) / USUAL_BODIES
+
+
 def estimate_point_seconds(scene: Scene, model: Model) -> float:
     """Return the rough processor time, s, that a model needs for one phase pair of a scene."""
-    return model.seconds * scene.duration / USUAL_DURATION * len(scene.bodies) / USUAL_BODIES
+    return scale_seconds(model.seconds, scene)
 
 
 def estimate_model_seconds(study: Study, model: Model) -> float:

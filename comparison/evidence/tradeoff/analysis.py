@@ -20,6 +20,7 @@ from comparison.result_types import Array
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
+from comparison.study.costs import scale_seconds
 from comparison.study.models import Model
 from comparison.study.user_models import engine_description
 from comparison.wording import word_exception
@@ -179,9 +180,9 @@ class TradeOff:
         """
         Return the tasks that call a function at all phase pairs of a question.
 
-        seconds: rough processor time of a phase pair for a motion of 20 s.
+        seconds: rough processor time of a phase pair of the usual scene, see `scale_seconds`.
         """
-        count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
+        count, each = question.quick if self.quick else question.points, scale_seconds(seconds, scene)
         size, phases = int(np.clip(TASK_SECONDS / each, 1, count)), sample_phases(count)
         engine = engine_description(function[1]).get("function", "")
         limits = {engine_description(model.settings)["function"]: model.timeout for model in self.supplied}

@@ -211,6 +211,13 @@ def test_every_measurement_ends() -> None:
     assert max(task.timeout for task in tasks) == 20.0 * 500.0 + 60.0, "500 s of a phase pair at the finest step"
 
 
+def test_a_taller_and_longer_scene_is_announced_with_its_own_time() -> None:
+    usual = load_scene("fig3-I")
+    tall = split_upper_body(usual, 6).with_values({"duration": 30.0})
+    expected = [sum(task.seconds for task in analysis.TradeOff([scene], True).tasks()) for scene in (usual, tall)]
+    assert expected[1] == pytest.approx(4.5 * expected[0]), "three times the bodies, 1.5 times the duration"
+
+
 def test_a_time_limit_makes_no_cost_zero(monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: on Linux the clock of a process with a limit goes in steps of 4 ms, and most settings cost nothing."""
     for own, whole, expected in ((25e-5, 0.0, 25e-5), (25e-5, 4e-3, 25e-5), (0.5, 8.0, 7.99)):
