@@ -113,7 +113,7 @@ def fit_trend(
 def word_trends(trends: Sequence[Trend]) -> str:
     """Return in words how many fitted exponents agree with theory, and the first that does not."""
     expected = [each for each in trends if each.expected is not None]
-    verdicts = {id(each): _judge_trend(each) for each in expected}
+    verdicts = {id(each): _judge_exponent(each.exponent, each.uncertainty, each.expected) for each in expected}
     missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
     where = ""
     if missed:
@@ -124,11 +124,11 @@ def word_trends(trends: Sequence[Trend]) -> str:
     return f"{words} (first: {where})" if where else words
 
 
-def _judge_trend(each: Trend) -> Verdict:
-    """Return whether the fitted exponent of a trend agrees with the expected one: met, not met or not compared."""
-    if each.verdict == f"like the power {each.expected:g}":
-        return MET
-    return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
+def _judge_exponent(exponent: float, uncertainty: float, expected: float | None) -> Verdict:
+    """Return whether a fitted exponent agrees with the expected one: met, not met or not compared."""
+    if expected is None or not np.isfinite(exponent) or uncertainty > MAX_EXPONENT_UNCERTAINTY:
+        return NOT_COMPARED
+    return MET if abs(exponent - expected) <= max(MAX_EXPONENT_DEVIATION, uncertainty) else NOT_MET
 
 
 def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
@@ -139,5 +139,5 @@ def _word_slope_verdict(slope: FittedSlope, expected: float | None) -> str:
         return "no single slope: phase pairs or values do not agree"
     if expected is None:
         return "hardly falls: not converged at any value in use" if slope.exponent < MIN_EXPONENT else "falls"
-    agrees = abs(slope.exponent - expected) <= max(MAX_EXPONENT_DEVIATION, slope.uncertainty)
+    agrees = _judge_exponent(slope.exponent, slope.uncertainty, expected) == MET
     return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"

@@ -313,7 +313,7 @@ MISTAKES = (
     Mistake("comparison/analyses/worst_phases/feature.py", 'return "on an edge of the surface" if worst.kind == "kink" else "on a smooth maximum"',
             'return "on an edge of the surface" if worst.kind == "smooth" else "on a smooth maximum"', "An edge is called smooth.", WORST),
     Mistake("comparison/evidence/trends.py", "each = missed[0]", "each = missed[-1]", "The last exponent is called the first.", TRENDS),
-    Mistake("comparison/evidence/trends.py", "<= max(MAX_EXPONENT_DEVIATION, slope.uncertainty)", "<= MAX_EXPONENT_DEVIATION + slope.uncertainty",
+    Mistake("comparison/evidence/trends.py", "<= max(MAX_EXPONENT_DEVIATION, uncertainty)", "<= MAX_EXPONENT_DEVIATION + uncertainty",
             "An exponent agrees beyond both of its limits.", TRENDS),
     Mistake("reference/problem/readings.py", "to v_reg = {SECOND_V_REG_RATIO * regularization:g} m/s", "to v_reg = {regularization:g} m/s",
             "A law names the speed that it starts from twice.", LAWS),

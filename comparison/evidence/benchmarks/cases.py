@@ -85,7 +85,7 @@ def list_cases() -> list[BenchmarkCase]:
 
 
 def _wear_power_cases() -> list[BenchmarkCase]:
-    """Return benchmarks of the wear power (contact force times sliding speed) of a shaken block (SDND104)."""
+    """Return benchmarks of the mean wear power (contact force times sliding speed) of a shaken block (SDND104)."""
     # m/s^2, amplitude of the shaking; W, published power; half of its last digit
     numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
     kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
@@ -93,8 +93,8 @@ def _wear_power_cases() -> list[BenchmarkCase]:
         BenchmarkCase(
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
-            evidence="friction energy of stick and slip under harmonic shaking",
-            published=[PublishedNumber(quantity="power of friction", unit="W", published=power, uncertainty=digits)],
+            evidence="path length of stick and slip under harmonic shaking",
+            published=[PublishedNumber(quantity="mean wear power", unit="W", published=power, uncertainty=digits)],
             # The contact force, which is the weight, times the path that the block slides, over the time of 8 s
             reading=MotionReading(
                 readings.compute_path_length, arguments={"begin": 4.0, "end": 12.0}, factor=BLOCK_WEIGHT / 8.0
