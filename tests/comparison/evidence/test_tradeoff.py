@@ -308,6 +308,8 @@ def test_a_known_slope_is_found_in_the_larger_half() -> None:
     assert fit_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
     assert fit_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
     assert np.isnan(fit_slope(values[:2], seconds[:2])[0])
+    odd, costs = [1.0, *values], [1.0, 1.0, 1.0, 5.0, *seconds[3:]]
+    assert fit_slope(odd, costs)[0] == pytest.approx(linregress(np.log(odd[3:]), np.log(costs[3:])).slope), "four of 7"
     line = linregress(np.log([1.0, 2.0, 4.0]), np.log([1.0, 3.0, 5.0]))
     assert fit_slope([1.0, 2.0, 4.0], [1.0, 3.0, 5.0]) == pytest.approx((line.slope, line.stderr))
 

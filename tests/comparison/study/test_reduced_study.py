@@ -33,6 +33,13 @@ from reference.problem.reductions import is_mirror_symmetric
 GRID = 4
 
 
+def test_of_two_limited_models_the_coarser_grid_is_part_of_the_finer() -> None:
+    """Of 60 phases, 30 are every second. 20 would be every third, some of which are not among these: every fourth."""
+    limited = [replace(TRANSLATIONAL, most=30), replace(SPATIAL, most=20), SMALL]
+    study = Study((load_scene("fig3-I"),), 60, 1e-3, limited)
+    assert study.strides == {"small": 1, "translational": 2, "spatial": 4}
+
+
 def surfaces(scene: Scene, models: list[Model], full: bool) -> tuple[int, xr.Dataset]:
     """How many phase pairs are computed, and the surfaces."""
     study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, models, full)

@@ -24,7 +24,7 @@ from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.figures import paper
-from comparison.surfaces.figures.pairs import _draw_difference_map, find_height_limits
+from comparison.surfaces.figures.pairs import _draw_difference_map, draw_map, find_height_limits
 from comparison.surfaces.figures.paper import draw_paper_figure
 from comparison.surfaces.figures.pictures import Pictures
 from reference.problem import Scene, load_scene
@@ -81,6 +81,15 @@ def test_one_phase_pair_that_differs_is_seen_among_many_alike() -> None:
     figure = Figure()
     _draw_difference_map(figure, figure.add_axes((0, 0, 1, 1)), comparison.difference(comparison.effect_pairs[0]))
     assert figure.axes[0].collections[0].get_clim() == pytest.approx((-30.0, 30.0))
+
+
+def test_a_map_has_alpha1_to_the_right_and_alpha2_upward() -> None:
+    axes = Figure().add_subplot()
+    phase = np.array([0.0, 0.5, 1.5]) * np.pi
+    image = draw_map(axes, phase, np.arange(9.0).reshape(3, 3))
+    rightward = [image.get_array()[2, column] for column in range(4)]
+    assert rightward == [2.0, 5.0, 8.0, 2.0], "values at alpha2 = 3 pi / 2, and the first one again at 2 pi"
+    assert image.get_coordinates()[0, :2, 0].tolist() == pytest.approx([-0.25 * np.pi, 0.25 * np.pi])
 
 
 def test_a_figure_in_the_manner_of_the_paper_has_no_engine_of_the_user(

@@ -66,3 +66,11 @@ def test_the_scatter_is_that_of_every_shifted_grid() -> None:
         sizes = np.zeros((4, 4))
         sizes[row, column] = 1.0
         assert estimate_sampling_error(sizes, 16) == pytest.approx(1.5 * np.sqrt((9.0 + 3.0) / 256.0 / 4.0))
+
+
+def test_shifted_grids_skip_by_the_last_factor_of_the_grid() -> None:
+    """12 is 2 x 2 x 3: one value of 144 lies on one of nine shifted grids of 4 x 4, whose mean is 1/16."""
+    sizes = np.zeros((12, 12))
+    sizes[5, 7] = 1.0
+    scatter = np.sqrt(((1.0 / 16.0 - 1.0 / 144.0) ** 2 + 8.0 / 144.0**2) / 9.0)
+    assert estimate_sampling_error(sizes, 144) == pytest.approx(1.5 * scatter)
