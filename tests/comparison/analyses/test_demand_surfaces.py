@@ -104,6 +104,9 @@ def test_the_extremes_of_a_demand_have_their_own_errors_and_phases(study: Study,
     assert found[0] == pytest.approx((1.0, 0.21, axis[1], axis[3]))
     assert found[1] == pytest.approx((99.0, 0.14, axis[2], axis[0]))
     assert row.unknown == pytest.approx(1.0 / 16.0)
+    limited = replace(study, hierarchy=(SMALL, replace(EXACT, most=2)))  # every second phase of either axis
+    rows = {(row.model, row.quantity): row for row in demand_statistics(limited, planted, study.scenes[0])}
+    assert rows[EXACT.key, "base_shear"].highest.phases == pytest.approx((axis[2], axis[0]))
 
 
 def test_an_unknown_error_of_a_demand_is_one_of_its_mean(study: Study, demands: xr.Dataset) -> None:

@@ -10,7 +10,7 @@ import xarray as xr
 
 import reference
 from comparison.analyses.worst_phases import analysis
-from comparison.analyses.worst_phases.feature import _name_reading, _word_kind
+from comparison.analyses.worst_phases.feature import _distribution_curves, _name_reading, _word_kind
 from comparison.runner.task import make_failed_result
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
@@ -192,3 +192,13 @@ def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
     assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))
     assert found.phases == ((1.0, 2.0) if kind == "nearby" else (0.5, 0.25))
     assert found.error == pytest.approx(0.02 if kind == "nearby" else 0.03)
+
+
+def test_distributions_are_of_the_small_equations_and_of_the_last_model_of_the_headline() -> None:
+    models = ("small", "small-resolved", "regularised", "translational", "spatial")
+    scene: Any = SimpleNamespace(
+        headlines=[SimpleNamespace(body=body, first="regularised", second=f"spatia{body * 'l'}") for body in (1, 2)],
+        distributions=[SimpleNamespace(model=key, body=1, curve=(float(k),)) for k, key in enumerate(models)],
+    )
+    assert _distribution_curves(scene, 1) == [("small", (0.0,)), ("small-resolved", (1.0,)), ("spatial", (4.0,))]
+    assert _distribution_curves(scene, 2) == []

@@ -80,14 +80,17 @@ FOLDER = {"url": "file:///no/such/folder", "dir_info": {}}
 def test_the_requirement_is_where_others_find_the_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: dict[str, Any] | None, origin: str, address: str
 ) -> None:
+    contained = ["branch", "--remotes", "--contains", COMMIT]  # in a branch that others can fetch
     said = {"rev-parse": COMMIT, "branch": "origin/main" if origin else "", "remote": origin}
-    monkeypatch.setattr(source, "ask_git", lambda folder, verb, *rest: said[verb])
+    asked: list[list[str]] = []
+    monkeypatch.setattr(source, "ask_git", lambda folder, *words: asked.append([*words]) or said[words[0]])
     text = json.dumps(recorded) if recorded else None  # nothing is recorded of an index or a folder on the path
     monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
     monkeypatch.setattr(source, "CHECKOUT_FOLDER", tmp_path)
     if recorded is None:  # not installed: it runs from a checkout
         (tmp_path / "pyproject.toml").touch()
     assert source.make_requirement_line() == f"phase-resonance{address}"
+    assert [words for words in asked if words[0] == "branch"] in ([], [contained])
     assert f"\nphase-resonance{address}\n".encode() in make_study_files("x")["requirements.txt"]
 
 

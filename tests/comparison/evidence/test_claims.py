@@ -292,7 +292,7 @@ def test_the_surfaces_of_the_study_are_used_where_it_has_the_grid() -> None:
     assert select_study_surfaces(study, surfaces, "fig3-I", AS_INTEGRATED, 4) is None
     assert select_study_surfaces(study, surfaces, "fig3-I alone", LITERAL_SUPREMUM, 4) is None
     assert select_study_surfaces(study, None, "fig3-I", LITERAL_SUPREMUM, 4) is None
-    changed = tuple(scene.with_values({"duration": 19.0}) for scene in scenes)
+    changed = tuple(scene.with_values({"duration": 19.0, "name": scene.name}) for scene in scenes)
     assert select_study_surfaces(replace(study, scenes=changed), surfaces, "fig3-I", LITERAL_SUPREMUM, 4) is None
     tasks = {(t.argument.case, t.argument.reading): t.argument.known for t in Claims(4).tasks(study, surfaces)}
     assert tasks["fig3-I", LITERAL_SUPREMUM] is not None

@@ -220,13 +220,13 @@ def test_the_time_left_follows_from_the_work_so_far(
 ) -> None:
     now = [100.0]
     monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: now[0])
-    with show_progress(Console(), 120.0, 2) as display:
+    with show_progress(Console(), 130.0, 2) as display:
         display.skip(20.0)
         for count, seconds in enumerate((14.0, 16.0, 30.9, 31.4)):  # a line every 15 s
             now[0] = 100.0 + seconds
-            display.advance("engine", f"{count} of 9 tasks", 0.0 if count == 0 else 10.0)  # the first does not count
-    # 10 of 100 in 2 s, 30 in 17.4 s, and a tenth of all work in half its cost
-    left = [f"{90.0 * (2.0 + 5.0) / (10.0 + 10.0):.0f} s left", f"{70.0 * (17.4 + 5.0) / (30.0 + 10.0):.0f} s left"]
+            display.advance("engine", f"{count} of 9 tasks", 10.0)
+    # Of 110 the first 10 do not count: 10 in 2 s, 30 in 17.4 s, and a tenth of all work in half its cost
+    left = [f"{90.0 * (2.0 + 5.5) / (10.0 + 11.0):.0f} s left", f"{70.0 * (17.4 + 5.5) / (30.0 + 11.0):.0f} s left"]
     assert capsys.readouterr().out.splitlines() == [
         f"    16 s  engine: 1 of 9 tasks, about {left[0]}",
         f"    31 s  engine: 3 of 9 tasks, about {left[1]}",
