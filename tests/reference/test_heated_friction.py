@@ -124,7 +124,7 @@ def test_what_the_published_sum_of_heat_tends_to_is_solved():
 
 
 def test_heat_long_past_is_that_of_all_pieces(within):
-    """By quadrature over every piece of a slide with rests; in the solver blocks of pieces stand for what is long past."""
+    """By quadrature over every piece of a slide with rests; in the solver blocks stand for pieces long past."""
     random = np.random.default_rng(5)
     length = random.uniform(0.2, 1.8, 600)
     start = np.append(0.0, np.cumsum(length)[:-1])
