@@ -155,6 +155,8 @@ def _exit_code_of(main: Callable[[], int]) -> int:
             code = main()
         except SystemExit as end:  # argparse raises SystemExit
             code = end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED_ERROR_CODE
+            if isinstance(end.code, str):
+                _print_line(" ".join(end.code.split()))
         sys.stdout.flush()
         return code
     except SceneError as error:

@@ -799,5 +799,17 @@ MISTAKES = (
             "A largest value as integrated is called a supremum.", ("tests/reference/test_worst_phases.py::test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted",)),
     Mistake("reference/building.py", "_word_peaks([building.ground_peak for building in own])", "_word_peaks([building.ground_peak for building in buildings])",
             "Each kind of building has the peaks of all.", ("tests/reference/test_building.py::test_buildings_that_are_alike_are_described_once_with_all_peaks",)),
+    Mistake(SOLVER + "heating.py", "+ b[0] * (b[2] + (b[1] - center) ** 2)) / heat", "+ b[0] * b[2]) / heat",
+            "Of two blocks of heat the later one lies at the mean time of both.", ("tests/reference/test_heated_friction.py::test_heat_long_past_is_that_of_all_pieces",)),
+    Mistake(SOLVER + "heating.py", "/ (system.radius**2 - (x**2).sum(axis=1))", "/ system.radius**2",
+            "On a slope heat is that of too slow a slide.", ("tests/reference/test_heated_friction.py::test_the_friction_of_a_motion_is_what_its_heat_leaves",)),
+    Mistake(SOLVER + "peaks.py", "work.reading_error[body] = work.drift[body]", "work.reading_error[body] = 0.0",
+            "A one-sided limit has no error.", ("tests/reference/test_small_readings.py::test_a_one_sided_limit_has_what_the_steps_missed_of_vibrations_as_its_error",)),
+    Mistake(SOLVER + "contact/friction.py", "ly = friction * (reaction - load.uy * (load.px + load.py)", "ly = friction * (reaction - load.ux * (load.px + load.py)",
+            "The printed limit along y is that of a ground along x.", ("tests/reference/test_statuses.py::test_the_first_rest_ends_where_the_print_says",)),
+    Mistake("reference/support/command.py", "else 0 if end.code is None else UNEXPECTED_ERROR_CODE", "else 0",
+            "A command that ends with a text ends well.", ("tests/comparison/cli/test_command_ends.py::test_a_command_ends_with_its_own_exit_code_or_that_of_the_signal",)),
+    Mistake(PROBLEM + "definition.py", "1.04 * square[n] > highest", "1.004 * square[n] > highest",
+            "The ground does not peak on a wave whose samples are far from its top.", ("tests/reference/problem/test_loading.py::test_the_ground_peaks_at_its_highest_wave_and_not_at_the_highest_sample",)),
 )
 # fmt: on

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from heated_motion import heated_motion, temperature_rise
+from scipy.interpolate import BarycentricInterpolator
 
 import reference
 from reference.problem import DryFriction, load_scene
@@ -45,18 +46,33 @@ def test_a_heated_motion_is_that_of_constant_steps(name, within):
     assert np.abs(motion.position - without.position).max() > 50.0 * error
 
 
-@pytest.mark.parametrize("v_reg", [None, 1e-3])
-def test_the_friction_of_a_motion_is_what_its_heat_leaves(v_reg):
+UNEQUAL = SCENE.with_values({"bodies.0.mass": 1.3, "bodies.1.mass": 0.7})
+BOWL = SCENE.with_values({
+    "isolator.period": None, "isolator.radius": 0.4, "bodies.0.mass": 130.0, "bodies.1.mass": 70.0,
+    "excitation.amplitudes": [[3.0, 0.0], [1.0, 3.0], [0.0, 0.0]],
+})  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scene", "v_reg", "atol"),
+    [
+        (heated(UNEQUAL), None, 3e-3),
+        (heated(UNEQUAL), 1e-3, 3e-3),
+        (heated(BOWL, contact_radius=0.3, conductivity=0.01), None, 1e-5),  # always covered: the power has no jumps
+    ],
+    ids=["dry", "regularized", "on the slopes of a bowl"],
+)
+def test_the_friction_of_a_motion_is_what_its_heat_leaves(scene, v_reg, atol):
     """Power by the balance of forces; the integral over a constant step; friction where the platform slides fast."""
-    scene, step = heated(SCENE.with_values({"bodies.0.mass": 1.3, "bodies.1.mass": 0.7})), 2e-4
+    step, table = 2e-4, scene.isolator.friction.heating.model_dump()
     motion = reference.trajectory(scene, PHASE, regularization=v_reg, times=np.arange(20001) * step)
     speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
-    covers = np.hypot(*motion.position[:, 0, :2].T) < 0.5 * np.sqrt(np.pi) * HEATING["contact_radius"]
-    integral = temperature_rise(HEATING, 4, motion.friction_power * covers, step)
+    covers = np.hypot(*motion.position[:, 0, :2].T) < 0.5 * np.sqrt(np.pi) * table["contact_radius"]
+    integral = temperature_rise(table, 4, motion.friction_power * covers, step)
     fast = speed > 0.05
     left = motion.friction_power[fast] / (0.1 * motion.contact_force[fast] * speed[fast])
     assert np.ptp(left) > 0.15
-    np.testing.assert_allclose(left, 0.79 * (0.7 ** (0.02 * (20.0 + integral[fast])) + 0.4), atol=3e-3)
+    np.testing.assert_allclose(left, 0.79 * (0.7 ** (0.02 * (20.0 + integral[fast])) + 0.4), atol=atol)
 
 
 LOAD, RADIUS = 6285.71, 2.2352  # of MASTODON's loops, kN and m
@@ -105,6 +121,25 @@ def test_what_the_published_sum_of_heat_tends_to_is_solved():
     rough, fine = (summed(LAWS[0], 5e-3 / parts)[200 * parts] / solved - 1.0 for parts in (1, 64))
     assert 0.01 < rough < 0.04
     assert fine == pytest.approx(rough / 8.0, abs=0.1 * rough / 8.0)
+
+
+def test_heat_long_past_is_that_of_all_pieces(within):
+    """By quadrature over every piece of a slide with rests; in the solver blocks stand for pieces long past."""
+    random = np.random.default_rng(5)
+    length = random.uniform(0.2, 1.8, 600)
+    start = np.append(0.0, np.cumsum(length)[:-1])
+    rests = np.arange(600) % 40 >= 36
+    waves = 1.0 + 0.9 * np.sin(3.0 * NODES + random.uniform(0.0, 6.0, (600, 1)))
+    power = waves * random.uniform(0.0, 1.0, (600, 1)) ** 2 * ~rests[:, None]
+    k_t = np.ones_like(power)
+    fill_temperature_factors(start, length, power, 15.0, k_t)
+    points, weights = np.polynomial.legendre.leggauss(40)
+    heat = BarycentricInterpolator(NODES, (power * k_t).T)(0.5 + 0.5 * points).T * 0.5 * weights * length[:, None]
+    times = start[:, None] + length[:, None] * (0.5 + 0.5 * points)
+    for n in np.flatnonzero(rests & np.roll(rests, 1)):
+        rise = (heat[:n] / np.sqrt(start[n] + length[n] * NODES[-1] - times[:n])).sum()
+        found = np.log(k_t[n, -1] / 0.79 - 0.4) / np.log(0.7) / 0.02 - 15.0
+        within(abs(found / rise - 1.0), 5e-8)
 
 
 def test_heat_and_motion_on_a_plane_settle():

@@ -16,6 +16,7 @@ from reference.measures.peak_demands import QUANTITIES
 from reference.measures.story_forces import story_forces
 from reference.problem import State, load_scene
 from reference.solver.contact import stop_arc
+from reference.solver.peaks import update_peak_by_limit
 from reference.solver.phases import follow, stopping
 from reference.solver.record import record_stick
 
@@ -150,6 +151,17 @@ def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest
         if step < 5:
             np.testing.assert_allclose(work.drift, step * share * work.defect)
     np.testing.assert_allclose(work.drift, work.defect / (2.0 * share))
+
+
+def test_a_one_sided_limit_has_what_the_steps_missed_of_vibrations_as_its_error() -> None:
+    """The largest of its body is replaced; near it an early end is put off alone, and below nothing is changed."""
+    for squared, later, best, error in ((4.1, 1.5, 4.1, 3e-5), (3.9, 1.5, 4.0, 7e-5), (3.0, 0.5, 4.0, 7e-5)):
+        work: Any = SimpleNamespace(time=1.5, last_peak=0.5, last_large=0.5)
+        work.best, work.reading_error, work.drift = np.array([[9.0, 4.0], [8e-5, 7e-5], [2e-5, 3e-5]])
+        update_peak_by_limit.py_func(work, 1, squared)
+        assert (work.last_large, work.last_peak) == (later, later)
+        assert work.best.tolist() == [9.0, best]
+        assert work.reading_error.tolist() == [8e-5, error]
 
 
 def test_rests_that_touch_are_one() -> None:

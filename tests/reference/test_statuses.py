@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 import reference
 from reference import surface
-from reference.problem import ADVICE, GRAVITY, Outcome, Scene, load_scene, phase_grid
+from reference.problem import ADVICE, GRAVITY, Outcome, Scene, State, load_scene, phase_grid
 
 PHASE = (0.3, 1.1)
 BOTH = pytest.mark.parametrize("equations", ["exact", "small"])
@@ -171,3 +171,23 @@ def test_the_printed_rest_condition_is_looser():
     run = reference.trajectory(scene, PHASE, "small", times=[end])
     q = run.position[0, :, :2].ravel().tolist()
     assert law.excess(end, q, law.link_forces(q, [0.0] * len(q))) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_first_rest_ends_where_the_print_says():
+    """F_3 and the components of F_F of (4.6), off the center and under a different loading along each axis."""
+    scene = load_scene("fig3-I")
+    scene = scene.with_values({"excitation.amplitudes": [[1.9, -0.6], [0.5, 1.4], [0.8, -1.1]]})
+    initial = State(np.array([[0.07, -0.03]] * 2), np.zeros((2, 2)))
+    options = {"rest_condition": "printed", "initial": initial}
+    end = reference.trajectory(scene, PHASE, "small", **options).stick[0][1]
+    place = reference.trajectory(scene, PHASE, "small", times=[end], **options).position[0, :, :2].ravel()
+    law = Law(scene, PHASE, "small")
+    force, ground = law.link_forces(place.tolist(), [0.0] * 4), law.ground(end)
+    normal, held, limit = law.total / law.mass[0] * (GRAVITY + ground[2]), [], []
+    for axis in range(2):
+        drive = force[axis] / law.mass[0] - ground[axis]
+        held.append(-(drive + 2.0 * ground[axis]) + normal * place[axis] / law.rho)
+        limit.append(law.mu * (normal - ground[axis] * (place[0] + place[1]) / law.rho))
+    assert 0.0 < end < scene.duration
+    assert law.excess(end, place.tolist(), force) > 1e-3, "by the condition that is not the print's it has ended before"
+    assert np.hypot(*held) == pytest.approx(np.hypot(*limit), rel=1e-8)

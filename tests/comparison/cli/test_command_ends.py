@@ -52,6 +52,9 @@ def ended(body: str, **options: Any) -> tuple[int, str]:
     [
         ("return 0", 0, ""),
         ("return 1", 1, ""),
+        ("sys.exit()", 0, ""),
+        ("sys.exit(2)", 2, ""),
+        (r"sys.exit('no\nmore')", 3, "no more\n"),
         pytest.param("os.kill(os.getpid(), signal.SIGINT)", 130, "interrupted\n", marks=POSIX),
         pytest.param("os.kill(os.getpid(), signal.SIGTERM)", 143, "interrupted\n", marks=POSIX),
     ],

@@ -72,6 +72,16 @@ def test_ground_peak_is_the_maximum_of_dense_samples(duration, decay):
             assert peak**2 - sampled**2 <= 4.0 * (envelope * fastest * times[1]) ** 2 + 1e-14
 
 
+@pytest.mark.parametrize("amplitudes", [((1.0, 0.0), (0.0, 1.0), (0.0, 0.0)), ((1.0, 1.0), (0.0, 0.0), (0.0, 0.0))])
+def test_the_ground_peaks_at_its_highest_wave_and_not_at_the_highest_sample(amplitudes):
+    """Of 200 phase pairs some have the highest of 32 samples per period on a wave that is not the highest."""
+    load = chain(amplitudes=amplitudes, periods=(0.4, 0.55), decay=(0.0, 0.0), duration=10.0)
+    phases = np.random.default_rng(5).uniform(0.0, 6.3, (200, 2))
+    waves = np.exp(np.multiply.outer(np.linspace(0.0, 10.0, 20_001), exponents(load)))
+    squares = sum(((row * np.exp(1j * phases)) @ waves.T).real ** 2 for row in load.amplitudes)
+    np.testing.assert_allclose(ground_peak(load, phases), np.sqrt(squares.max(axis=1)), rtol=2e-5)
+
+
 def test_the_loading_changes_within_the_shorter_period_whichever_it_is():
     assert [loading_period(chain(periods=periods)) for periods in ((0.7, 1.1), (1.1, 0.7))] == [0.7, 0.7]
     at_rest = {"record": {"time": [0.0, 0.5], "acceleration": [0.0, 0.0]}}
