@@ -65,6 +65,9 @@ def test_phases_at_which_the_rim_or_the_travel_is_reached_are_told_as_by_a_run(s
     assert set(full.status) == {Outcome.OK.value, end.value}, "some phases reach it, some do not"
     assert reduced.status.tolist() == full.status.tolist()
     np.testing.assert_array_equal(reduced.instant, full.instant)
+    np.testing.assert_allclose(reduced.cap_share, full.cap_share, rtol=1e-6)
+    ok = full.status == Outcome.OK
+    np.testing.assert_allclose(reduced.cap_share[ok] * scene.radius, reduced.displacement[ok])
 
 
 def test_full_and_the_exact_equations_are_integrated(monkeypatch):

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from chains import refusal
 
-from reference.problem import DryFriction, load_family, load_scene
+from reference.problem import DryFriction, families, load_family, load_scene
 from reference.problem.scene_file import scene_text
 
 TABLE = "{slow = 0.03, fast = 0.05, rate = 50.0}"
@@ -35,6 +35,12 @@ def test_bounds_are_combined_with_every_value_that_runs(tmp_path: Path) -> None:
     assert [scene.name for scene in family.scenes] == names
     assert family.columns["isolator.bounds"] == (0.8, 0.8, 1.5, 1.5)
     assert family.columns["excitation.scale"] == (1.0, 2.0, 1.0, 2.0)
+
+
+def test_bodies_of_both_bounds_count_for_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(families, "MAX_BODIES_IN_ALL", 11)
+    said = refusal(load_family, bounded_file(tmp_path, scale="{values = [1.0, 2.0, 3.0]}"))
+    assert "bodies: 2 in each of 6 scenes = 12" in str(said)
 
 
 def test_bounds_of_the_caller_take_the_place_of_those_in_the_file(tmp_path: Path) -> None:

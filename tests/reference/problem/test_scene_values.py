@@ -3,6 +3,8 @@
 import math
 import tomllib
 from dataclasses import fields
+from types import SimpleNamespace
+from typing import Any
 from unittest import mock
 
 import numpy as np
@@ -15,8 +17,10 @@ from reference.measures import Demands
 from reference.measures.peak_demands import PER_BODY
 from reference.measures.peak_demands import QUANTITIES as DEMANDS
 from reference.problem import GRAVITY, Scene, SceneError, load_scene, parse_scene
+from reference.problem.acceptance import Acceptance
 from reference.problem.measured import BODY_QUANTITIES, QUANTITIES
 from reference.problem.scene_file import scene_text
+from reference.problem.supports import are_on_one_line
 
 FIG3 = load_scene("fig3-I")
 TEXT = scene_text("fig3-I").decode().replace("mass = 1.0\nperiod", "mass = 3.0\nperiod")
@@ -139,3 +143,21 @@ def test_a_file_states_measured_peaks_which_change_no_digest() -> None:
     assert pair.with_values({"measured": [peak]}).measured[0].phases is None
     said = refusal(pair.with_values, {"measured": [{**peak, "phases": [0.3, 1.1]}]})
     assert (said.key, said.rule) == ("measured.0.phases", "a record has no phases: remove it")
+
+
+def test_supports_beside_the_axis_may_be_on_one_line() -> None:
+    line = np.array([[2.0, 1.0], [3.0, 1.5], [7.0, 3.5]])
+    assert are_on_one_line(line)
+    assert are_on_one_line(line + np.array([0.7, -4.0]))
+    assert not are_on_one_line(line + np.array([[0.0, 0.0], [0.0, 0.1], [0.0, 0.0]]))
+
+
+def test_a_limit_on_closure_alone_allows_no_point_without_an_answer() -> None:
+    assert Acceptance(closure=1e-9).allowed_failures == 0
+    assert Acceptance(closure=1e-9, failed=3).allowed_failures == 3
+    assert Acceptance().allowed_failures is None
+
+
+def test_the_largest_acceleration_of_a_record_may_be_the_vertical_one() -> None:
+    shaken: Any = SimpleNamespace(recorded=True, record=np.array([[9.0, 1.0, -2.0, 0.0], [10.0, 0.0, 1.0, -4.0]]))
+    assert Scene.largest_acceleration.fget(shaken) == 4.0  # type: ignore[attr-defined]

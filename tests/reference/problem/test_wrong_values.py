@@ -62,6 +62,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ),
     ({"excitation.amplitudes.0.0": 1e308, "excitation.scale": 1e10}, "excitation.scale", "leave every acceleration fi"),
     ({"title": "a\0b"}, "title", "must have no control characters"),
+    ({"title": "a\ud800b"}, "title", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
     *(
