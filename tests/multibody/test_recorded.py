@@ -78,6 +78,10 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
     assert found == (pytest.approx(expected[0]), expected[1])
 
 
+def test_a_shorter_interval_has_steps_of_its_own() -> None:
+    assert align_steps(np.array([0.0, 0.2, 0.4, 0.5, 0.7]), 1e-7, 0.0, 0.06, 100) == (pytest.approx(0.05), 8)
+
+
 def test_an_instant_near_a_knot_is_the_knot() -> None:
     """Within a millionth of the shortest interval: a run from there begins behind it, and a step ends before it."""
     samples = [[0.0, 1.0, 0.0, 0.0], [0.1, 2.0, 0.0, 0.0], [0.15, 4.0, 0.0, 0.0], [0.3, 1.0, 0.0, 0.0]]

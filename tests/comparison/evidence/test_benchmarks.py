@@ -75,6 +75,13 @@ def _every_number_is_met_or_explained(table: Benchmarks) -> None:
             )
 
 
+def test_published_periods_of_a_uniform_building_are_those_of_its_closed_form() -> None:
+    """omega_n of N equal stories goes as sin((2 n - 1) pi / (4 N + 2))."""
+    (stories,) = (case for case in list_cases() if "five-story" in case.title)
+    sines = np.sin((2.0 * np.arange(1, 6) - 1.0) * np.pi / 22.0)
+    assert [each.published for each in stories.published] == pytest.approx(2.0 * sines[0] / sines, abs=5e-5)
+
+
 def test_a_side_that_fails_costs_the_others_nothing():
     broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
     chosen = [broken, *(BY_NAME[name] for name in CHEAP[:2])]
