@@ -251,14 +251,28 @@ def test_what_was_measured_is_said_with_what_the_study_adds() -> None:
     assert word_measurements(SimpleNamespace(measurement_clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
 
 
-def test_a_body_is_drawn_where_any_bar_is_seen() -> None:
-    def bars(mean: float, largest: float) -> Any:
-        each = [WaterfallBar("spatial", size, 0.0, True) for size in (mean, largest)]
-        nothing = WaterfallBar("total", 0.0, 0.0, True)
-        return SimpleNamespace(bars=[each[0]], total=nothing, largest=SimpleNamespace(bars=[each[1]], total=nothing))
+def bars_of_body(mean: float, largest: float) -> Any:
+    """Bar charts of a body with one effect, in the mean and at the largest difference."""
+    each = [WaterfallBar("spatial", size, 0.0, True) for size in (mean, largest)]
+    nothing = WaterfallBar("total", 0.0, 0.0, True)
+    return SimpleNamespace(bars=[each[0]], total=nothing, largest=SimpleNamespace(bars=[each[1]], total=nothing))
 
-    drawn = [page.is_drawn(bars(*sizes)) for sizes in ((0.009, 0.009), (-0.011, 0.0), (0.0, 0.011), (NAN, NAN))]
-    assert drawn == [False, True, True, False]
+
+def test_a_body_is_drawn_where_any_bar_is_seen() -> None:
+    sizes = ((0.009, 0.009), (-0.011, 0.0), (0.0, 0.011), (NAN, NAN))
+    assert [page.is_drawn(bars_of_body(*each)) for each in sizes] == [False, True, True, False]
+
+
+def test_bodies_without_a_seen_bar_are_counted_over_all_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "render_template", lambda name, context: context)
+    monkeypatch.setattr(page, "name_second_model", lambda study: "")
+    scenes = [
+        SimpleNamespace(waterfalls=[bars_of_body(size, 0.0) for size in sizes], headlines=["line"] * len(sizes))
+        for sizes in ((0.02, 0.001, 0.002), (0.003, 0.04))
+    ]
+    report: Any = SimpleNamespace(study=SimpleNamespace(hierarchy=()), results=SimpleNamespace(scenes=scenes))
+    context: Any = page.render_summary(report)
+    assert (len(context["drawn"]), context["hidden_bodies"]) == (2, 3)
 
 
 def test_the_table_of_the_terminal_has_mean_spread_and_maximum() -> None:
