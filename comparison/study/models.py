@@ -225,18 +225,17 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
     other = "the most complete model of Exudyn" if complete else f"the {last.title}"
-    against = f"{printed} against {other}"
-    pairs = [Pair(key="total", title="total", sentence=against, first=first, second=last, base=first)]
+    sentence = f"{printed} against {other}"
+    pairs = [Pair(key="total", title="total", sentence=sentence, first=first, second=last, base=first)]
     # The next two pairs need models with results: within the tolerance and the budget, and with an answer.
     if engine is not None and engine in models:
         if engine is not last and first is asked[0]:
             sentence = f"{printed} against Exudyn under the paper's own assumption that no body turns"
-            key = title = "translational"
-            pairs.append(Pair(key=key, title=title, sentence=sentence, first=first, second=engine, base=first))
+            key = "translational"
+            pairs.append(Pair(key=key, title=key, sentence=sentence, first=first, second=engine, base=first))
         if reference in models:
             sentence = "same geometry and same friction law on both sides: this gap must close"
-            title = "same equations and friction law"
-            key = "like-for-like"
+            key, title = "like-for-like", "same equations and friction law"
             pairs.append(Pair(key=key, title=title, sentence=sentence, first=reference, second=engine, base=reference))
     of_users = []
     for supplied in models_of(scene, hierarchy):
@@ -245,8 +244,9 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
             if like.key not in left_out:
                 sentence = f"the {like.title} against an engine of yours, which is said to solve the same"
                 title = f"{supplied.title}, against the {like.title}"
-                key = supplied.key
-                of_users.append(Pair(key=key, title=title, sentence=sentence, first=like, second=supplied, base=like))
+                of_users.append(
+                    Pair(key=supplied.key, title=title, sentence=sentence, first=like, second=supplied, base=like)
+                )
     return of_users + pairs
 
 

@@ -11,6 +11,7 @@ probability that n held-out ones all stay within E would be at most (1 - s)^n.
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -263,21 +264,22 @@ def _complete_body(
 
     gap = mu(model, model) - mu(finer, model) if finer else mu(model, model)
     computed = int(np.isfinite(gap).sum())
-    about: dict[str, Any] = {
-        "scene": scene.name,
-        "model": model.key,
-        "through": finer.key if finer else "",
-        "body": body,
-        "computed": computed,
-        "confidence": CONFIDENCE,
-        "asked": asked,
-    }
+    make_completion = partial(
+        Completion,
+        scene=scene.name,
+        model=model.key,
+        through=finer.key if finer else "",
+        body=body,
+        computed=computed,
+        confidence=CONFIDENCE,
+        asked=asked,
+    )
 
     def refuse(reason: str) -> Completion:
         """Return a completion without a surface, for this reason."""
         nothing = np.full((study.grid, study.grid), nan)
-        return Completion(
-            **about, held_out=0, error=nan, model_error=nan, share=1.0, difference=nan, reason=reason, mu=nothing
+        return make_completion(
+            held_out=0, error=nan, model_error=nan, share=1.0, difference=nan, reason=reason, mu=nothing
         )
 
     if reason := _explain_refusal(study, finer, model, computed, unused):
@@ -304,8 +306,7 @@ def _complete_body(
         off, allowed = f"{100.0 * error:.2g} %", f"{100.0 * asked:.2g} %"
         reason = f"interpolation misses held-out phase pairs by up to {off}, {allowed} asked"
         surface = np.full_like(surface, nan)
-    return Completion(
-        **about,
+    return make_completion(
         held_out=held_out,
         error=error,
         model_error=model_error,

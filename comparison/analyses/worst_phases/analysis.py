@@ -12,6 +12,7 @@ maxima of the surfaces, if these are as fine as the search's own grid.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -233,20 +234,19 @@ def _larger_of_grid_and_worst(
     engine = _surface_of_model(scene, model, model.tolerance(tolerance), worst.body)
     there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
-    beside = start > largest.mu  # whether the largest is at the worst phases of the equations
-    return LargestOverPhases(
+    make_largest = partial(
+        LargestOverPhases,
         scene=worst.scene,
         model=model.key,
         quantity=worst.quantity,
         body=worst.body,
-        value=start if beside else largest.mu,
-        error=start_error if beside else largest.error,
-        phases=worst.phases if beside else largest.phases,
-        kind="nearby" if beside else "grid",
         at_start=start,
         start_error=start_error,
         evaluations=engine.evaluations,
     )
+    if start > largest.mu:
+        return make_largest(value=start, error=start_error, phases=worst.phases, kind="nearby")
+    return make_largest(value=largest.mu, error=largest.error, phases=largest.phases, kind="grid")
 
 
 def _surface_of_model(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:

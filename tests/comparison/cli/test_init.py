@@ -83,7 +83,12 @@ def test_the_requirement_is_where_others_find_the_project(
     contained = ["branch", "--remotes", "--contains", COMMIT]  # in a branch that others can fetch
     said = {"rev-parse": COMMIT, "branch": "origin/main" if origin else "", "remote": origin}
     asked: list[list[str]] = []
-    monkeypatch.setattr(source, "ask_git", lambda folder, *words: asked.append([*words]) or said[words[0]])
+
+    def ask_git(folder: Path, *words: str) -> str:
+        asked.append([*words])
+        return said[words[0]]
+
+    monkeypatch.setattr(source, "ask_git", ask_git)
     text = json.dumps(recorded) if recorded else None  # nothing is recorded of an index or a folder on the path
     monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
     monkeypatch.setattr(source, "CHECKOUT_FOLDER", tmp_path)
