@@ -407,7 +407,7 @@ def _bracket_kink(points: Sequence[_QuantityAtValue], point: Callable[[float], _
     points: in order of rising `at`. point: function that computes the quantity at a value of the key.
     """
     x, f, e = np.array(points).T  # value of the key, quantity, its error
-    slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)  # of the intervals between points
+    slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)  # slope of each interval and its error
     excess = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # change of slope between intervals, less errors
     node = 1 + int(excess.argmax())
     if not excess[node - 1] > 0.0:

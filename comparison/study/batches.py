@@ -111,7 +111,7 @@ class BatchResult:
     status: list[str]  # outcome of every phase pair, (M,)
     instant: Array  # s, instant at which a status other than ok arose, (M,)
     cost: float  # s, processor time
-    error_message: str  # of the call; "" without an error
+    error_message: str  # what the call raised; "" without an error
     displacement: Array  # m, largest displacement of the platform, (M,)
 
 

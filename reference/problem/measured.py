@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 from reference.problem.keys import REPORT, REQUIRED, NonNegative, Table, Text, key
 from reference.support.arguments import Range
 
-BODY_QUANTITIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # of bodies, with the lowest body that has it
+BODY_QUANTITIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # quantity: lowest body that has it
 ISOLATOR_QUANTITIES = (  # quantities of the isolator or its supports as a whole
     "displacement",
     "residual",

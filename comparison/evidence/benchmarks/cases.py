@@ -31,7 +31,7 @@ RAMP_EFFECT = 2e-7  # m, change of displacement because the pulse falls to zero 
 
 @dataclass(frozen=True)
 class MotionReading:
-    """How the numbers of a benchmark are read from a motion: as `factor` times `function(motion, **arguments)`."""
+    """Rule to read the numbers of a benchmark from a motion: `factor` times `function(motion, **arguments)`."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)

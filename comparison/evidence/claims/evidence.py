@@ -21,7 +21,7 @@ MOTION_PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, phase
 
 @dataclass(frozen=True)
 class Evidence:
-    """What the checks know of a scene by the paper's small equations (4.3)-(4.4), in one reading of the peak (5.1)."""
+    """Facts on a scene by the paper's small equations (4.3)-(4.4), in one reading of the peak (5.1), for the checks."""
 
     # Amplification (n, n, N): n phases alpha1, n phases alpha2, N bodies; NaN if unknown
     mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
