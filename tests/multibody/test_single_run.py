@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import multibody
+import reference
 from multibody.integration.constant_step import EngineSolver, silence_engine
 from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
@@ -82,6 +83,13 @@ def test_every_integrator_finds_the_motion_at_a_constant_step(integrator: str) -
     answer = multibody.amplification(SCENE, [PHASE])
     assert len(run.time) >= 5001, "the engine may halve steps, never lengthen them"
     np.testing.assert_allclose(run.peak / ground_peak(SCENE, [PHASE])[0], answer.mu[0], rtol=5e-3)
+
+
+def test_a_peak_at_a_stop_is_read_at_the_corner_of_the_law_at_a_constant_step() -> None:
+    """A parabola across the corner, where the platform comes to a stop, would be wrong by 14 %."""
+    scene = SCENE.with_values({"duration": 3.0})
+    expected = reference.trajectory(scene, (4.0, 0.7), regularization=1e-3).peak
+    np.testing.assert_allclose(multibody.single_run(scene, (4.0, 0.7), step=2e-3).peak, expected, rtol=5e-3)
 
 
 def test_steps_are_small_at_stops_and_large_elsewhere() -> None:

@@ -112,7 +112,11 @@ def test_an_answer_without_another_level_says_nothing_of_its_error() -> None:
     assert (one.outcome, one.instant) == (Outcome.STEP_LIMIT, 0.5)
     assert np.isnan(one.peaks).all()
     pair, (level, *_) = PhasePair(scene, model, np.array(PHASE)), plan_levels(scene, model, 1e-3)
-    half = pair.run_level(level, Budget(0.5 * pair.run_level(level, Budget(1e9)).work))
+    paid = Budget(1e9)
+    whole = pair.run_level(level, paid, keep=True)
+    steps = sum(len(chunk.time) - 1 for chunk in whole.chunks)
+    assert 1e9 - paid.steps_left == whole.work > 1.05 * steps, "a step of many iterations is paid as several"
+    half = pair.run_level(level, Budget(0.5 * whole.work))
     assert half.outcome == Outcome.STEP_LIMIT
     assert 0.005 < half.instant * model.units.time < 0.5, "s, what the steps reach"
 
