@@ -299,6 +299,8 @@ def test_a_change_says_reading_base_sign_error_and_place() -> None:
     )
     assert "literal supremum" in describe_change(replace(change, reading="literal supremum"))
     assert largest_change(found, moved, 1).base == "the translational model"
+    once = replace(stated, change=stated.change[:1], uncertainty=stated.uncertainty[:1])  # equal at all by symmetry
+    assert largest_change(found, moved, 1, once).size == pytest.approx(0.576 / 0.91 - 1.0)
     assert describe_change(replace(change, size=math.nan)) == "mu_1: not compared, a phase pair has no value"
     [line] = assumption_lines(found, FIRST)
     assert line.startswith("bodies above the platform 0.1 m off the axis towards 180 degrees: mu_1 (as integrated)")
@@ -326,10 +328,13 @@ def test_a_verdict_has_three_words(size: float, error: float, reason: str, verdi
 def test_rings_and_offsets_are_told_in_meters_and_other_sizes_as_shares() -> None:
     wide = FIRST.with_values({"isolator.ring": 2.5, "name": FIRST.name})
     changes = {"ring": Variation(ring=2.0), "offset": Variation(offset=0.1), "oval": Variation(oval=0.5)}
-    cells = [cell(Variation(), 0.001), *(cell(variation, 0.2) for variation in changes.values())]
+    cells = [cell(Variation(), 0.001), *(cell(variation, 0.2, uncertainty=0.01) for variation in changes.values())]
     ranges = validity.find_validity_ranges(wide, cells)
     found = {each.key: each.fails for each in ranges if (each.body, each.share) == (1, 0.01)}
     assert {key: found[key] for key in changes} == {"ring": 5.0, "offset": 0.25, "oval": 0.5}
+    lines = [panel["plot"]["series"][0] for panel in assumption_panels(found_of(cells, scene=wide), wide)]
+    assert [line["x"] for line in lines] == [[2.5, 5.0], [1.0], [0.0, 0.5], [0.0, 0.25]]
+    assert [lines[-1][side][-1] for side in ("low", "y", "high")] == pytest.approx([19.0, 20.0, 21.0])
 
 
 def test_the_verdict_is_that_of_the_worst_body_of_every_scene() -> None:
