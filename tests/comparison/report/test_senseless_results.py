@@ -41,6 +41,9 @@ def edited(name: str, path: tuple[Any, ...], value: Any) -> bytes:
     return json.dumps(content).encode()
 
 
+MATCHED = {"motion": "motion 1", "factor": 1.5, "acceleration": [3.0, 2.0]}
+TARGET = {"low": 0.2, "high": 2.0, "period": [0.5, 1.0], "acceleration": [3.1, 2.1], "motions": [MATCHED]}
+TWINS = [json.loads(KNOWN[ENSEMBLE.name])["structures"][0]] * 2
 SENSELESS = [
     (ENSEMBLE.name, ("scales",), [], "scales must be at least one"),
     (ENSEMBLE.name, ("structures",), [], "structures must be at least one"),
@@ -55,11 +58,19 @@ SENSELESS = [
     (ENSEMBLE.name, ("stripes", 0, "body"), 10**9, "body must be from 1 to"),
     (ENSEMBLE.name, ("spectra", 0, "mean"), [], "mean, every fractile and largest must be 2 values, not 0"),
     (ENSEMBLE.name, ("spectra", 0, "largest"), [], "mean, every fractile and largest must be 2 values, not 0"),
+    (ENSEMBLE.name, ("stripes", 0, "mean", "error"), -0.1, "error must be from 0 on, not -0.1"),
+    (ENSEMBLE.name, ("structures",), TWINS, "structures must have different names"),
+    (ENSEMBLE.name, ("target",), {**TARGET, "motions": []}, "motions must be at least one"),
+    (ENSEMBLE.name, ("target",), {**TARGET, "acceleration": [3.1]}, "acceleration must be 2 values, not 1"),
+    (ENSEMBLE.name, ("target",), {**TARGET, "motions": [{**MATCHED, "acceleration": []}]}, "must be 2 values, not 0"),
     (STORED.name, ("trades", 0, "bodies"), 10**9, "bodies must be from 1 to 10000"),
     (STORED.name, ("trades", 0, "entries", 0, "most"), [], "most must be 2 values, not 0"),
+    (STORED.name, ("trades", 0, "entries", 0, "median"), [], "median must be 2 values, not 0"),
+    (STORED.name, ("trades", 0, "entries", 0, "error_estimate"), [], "error_estimate must be 2 values, not 0"),
     (STORED.name, ("trades", 0, "questions"), [], "is none of the questions"),
     (growth.FILE, ("series", 0, "seconds"), [], "seconds must be"),
     (growth.FILE, ("series", 0, "values"), [], "values must be"),
+    (growth.FILE, ("series", 0, "uncertainty"), None, "slope and uncertainty are known both or not"),
     (MATRIX.name, ("columns",), {}, "is none of the columns"),
     (VALIDATION.name, ("quantities", 0, "sides"), {}, "sides must have equations"),
     (VALIDATION.name, ("curves",), [{**CURVE, "name": "another"}], "name of a curve must be one of"),
@@ -77,6 +88,11 @@ def test_fields_that_contradict_each_other_are_refused(
         STORES[name].load(tmp_path)
     assert str(refused.value).count("\n") == 0
     assert name in str(refused.value)
+
+
+def test_a_target_spectrum_with_a_value_at_every_period_is_read(tmp_path: Path) -> None:
+    (tmp_path / ENSEMBLE.name).write_bytes(edited(ENSEMBLE.name, ("target",), TARGET))
+    assert ENSEMBLE.load(tmp_path).target.motions[0].factor == 1.5
 
 
 def test_a_senseless_file_beside_a_report_is_a_wrong_input(command: Callable[..., Run], tmp_path: Path) -> None:
