@@ -145,6 +145,17 @@ def test_a_report_of_which_every_part_raises_is_written(last_report: Last, capsy
     assert not re.search(r"\bNone\b", shown), "nothing stands in their place"
 
 
+def test_every_link_leads_to_a_part_of_the_page_that_it_names(last_report: Last) -> None:
+    folder, write, _ = last_report
+    write()
+    shown = {name: page_of(folder, name) for name in PAGES}
+    links = [(name, *link) for name in PAGES for link in re.findall(r'href="([\w.-]*)#([\w-]+)"', shown[name])]
+    assert len(links) > 20
+    assert [link for link in links if f'id="{link[2]}"' not in shown[link[1] or link[0]]] == []
+    assert ("index.html", "verification.html", "claims") in links
+    assert ("index.html", "", "conditioning") in links
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("place", [*places()], ids=lambda place: f"{place.said} {place.name}".replace(" ", "-"))
 def test_what_raises_in_a_part_costs_that_part_alone(
