@@ -181,7 +181,7 @@ def print_work(console: Console, ensemble: Ensemble, tasks: Sequence[Task], aske
     workers = f"{jobs} worker{'' if jobs == 1 else 's'}"
     wall = f"about {STARTING_SECONDS + seconds + WRITING_SECONDS:.0f} s on idle cores with {workers}"
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {wall}.")
-    if ensemble.spatial and asked != 0:
+    if ensemble.spatial:
         for scene, name in {m.structure: (m.scene, m.structure) for m in first if why_not_spatial(m.scene)}.values():
             limits = scene.acceptance.demands
             asked_of_it = limits is not None and limits.uplift is not None

@@ -511,6 +511,9 @@ def test_a_limit_on_uplift_without_the_spatial_model_is_a_warning(folder: Path, 
         said = capsys.readouterr().out
         assert said.count("no spatial model, as it lacks isolator.ring") == 2
         assert said.count("Warning: block[") == warned == said.count(": no model has the uplift that a limit is on.")
+    for without in (("--model", "translational"), ("--engine", "0")):
+        assert main(["block.toml", "--suite", "suite", "--plan", *without]) == 0
+        assert "no spatial model" not in capsys.readouterr().out, "it was not asked for"
 
 
 def test_a_scene_for_a_suite_needs_no_loading_of_its_own(folder: Path, capsys: Any) -> None:

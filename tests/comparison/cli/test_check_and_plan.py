@@ -112,6 +112,7 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     ]  # fmt: skip
     text = " ".join(run.out.split())
     assert "Analyses (tasks): held-out phases (0), pictures (chosen by the surfaces)." in text
+    assert "A recorded motion" not in text
     assert "Not in the report: surfaces (not asked for), motions (not asked for)" in text
     levels = [f"equations 16 x 16 phases, translational engine {n} x {n} phases, spatial engine 4 x 4" for n in (8, 16)]
     assert f"Level 1 of 3: {levels[0]} phases. Level 2 of 3: {levels[1]} phases. Level 3 of 3: {levels[1]}" in text

@@ -180,6 +180,8 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     assert "are in " not in first[0]
     planned = command("fig3-I", "--grid", "4", "--plan").out
     assert line in " ".join(planned.split())
+    alone = command("fig3-I", "--grid", "4", "--only", "budget", "--plan").out
+    assert line.replace(", 6 of 11 analyses", "") in " ".join(alone.split())
     assert "batches are in" not in command("fig3-I", "--grid", "4", "--fresh", "--plan").out
     fresh = stored(4, "--fresh")
     assert ("only the others are computed" in fresh[0], fresh[1]) == (False, 0)

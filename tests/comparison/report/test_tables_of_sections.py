@@ -231,6 +231,13 @@ def test_numbers_of_sections_are_of_every_scene_and_row() -> None:
     assert list_models_in_use(study) == [hierarchy[0], hierarchy[1], hierarchy[3]]
 
 
+def test_dots_are_on_a_logarithmic_axis_from_a_power_of_ten_to_another() -> None:
+    scale = make_log_scale([0.02, 0.0, 0.5, NAN, math.inf])
+    assert (scale.low, scale.high) == pytest.approx((0.01, 1.0))
+    assert scale.ticks == [1.0, 50.0, 99.0]
+    assert [scale.at(size) for size in (0.0, NAN, 1e-3, math.sqrt(1e-3), 7.0)] == [1.0, 1.0, 1.0, 25.5, 99.0]
+
+
 def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None:
     value = SimpleNamespace(body=2, model="spatial", mu=1.234, error=3.1e-4, status="ok")
     bar = WaterfallBar("spatial", -0.057, 7.3e-3, True)

@@ -98,16 +98,22 @@ def test_a_figure_in_the_manner_of_the_paper_has_no_engine_of_the_user(
     study, surfaces = planted_study({})
     mine = replace(study.hierarchy[5], key="mine", side="user", like="regularised")
     drawn: list[str] = []
+    figures: list[Figure] = []
 
     def noted(data: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
         drawn.append(f"{model.key} {body}")
         return np.arange(3.0), np.ones((3, 3))
 
     monkeypatch.setattr(paper, "extend_surface_to_two_pi", noted)
-    monkeypatch.setattr(Figure, "savefig", lambda *rest, **options: None)
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *rest, **options: figures.append(figure))
     with_mine = replace(study, hierarchy=(*study.hierarchy, mine))
     draw_paper_figure(tmp_path / "paper.png", with_mine, surfaces, study.scenes[0])
     assert drawn == [f"{key} {body}" for body in (1, 2) for key in ("small-resolved", "translational")]
+    a, b, c, d = (axes.get_position().extents for axes in figures[0].axes)  # left, bottom, right, top
+    assert max(a[2], c[2]) <= min(b[0], d[0]), "the engine is to the right of the equations"
+    assert max(c[3], d[3]) <= min(a[1], b[1]), "body 2 is below body 1"
+    assert 0.0 <= min(a[0], c[0]) < max(b[2], d[2]) <= 1.0
+    assert 0.0 <= c[1] < 0.1 < 0.9 < a[3] <= 1.0
 
 
 def test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take(tmp_path: Path) -> None:
