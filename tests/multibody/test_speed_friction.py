@@ -104,6 +104,20 @@ def test_the_coefficient_is_that_of_speed_and_load_at_the_end_of_a_step() -> Non
     assert found == pytest.approx([friction.law.coefficient_at(0.015, 1.304), friction.law.coefficient_at(0.0, 1.34)])
 
 
+def test_friction_that_depends_on_the_load_has_second_order_at_a_constant_step() -> None:
+    """The load is extrapolated as the speed is: with that of the step before the order would be one."""
+    law = {"slow": 0.03, "fast": 0.1, "rate": 20.0, "load_exponent": -0.3}
+    amplitudes = [[1.0, 0.4], [-0.3, 1.2], [2.3, 1.9]]
+    scene = load_scene("fig3-I").with_values({"duration": 1.5, "isolator.friction": law})
+    scene = scene.with_values({"excitation.amplitudes": amplitudes})
+    errors = []
+    for step in (2e-3, 5e-4):
+        motion = multibody.single_run(scene, (0.3, 1.1), step=step)
+        exact = reference.trajectory(scene, (0.3, 1.1), regularization=V_REG, times=motion.time)
+        errors.append(abs(motion.position[:, 0, :2] - exact.position[:, 0, :2]).max())
+    assert errors[1] < errors[0] / 12.0 < 1e-6
+
+
 @pytest.mark.parametrize("name", ["constant", "rising", "lubricated", "yielding"])
 def test_an_impact_has_the_friction_of_its_scene(name: str) -> None:
     """Springs transmit none, as they are soft beside contacts."""

@@ -11,6 +11,7 @@ from chains import chain
 from numpy.polynomial.legendre import leggauss
 
 import reference
+from reference.measures.energy import compute_energy
 from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, load_scene
 
 TOLERANCE = 1e-7
@@ -81,6 +82,9 @@ def test_energy_is_balanced(scene, equations, v_reg, within):
     motion = reference.trajectory(scene, *law, times=(edges[:-1, None] + 0.5 * width * (1.0 + nodes)).ravel())
     assert motion.status == "ok"
     energy, shaking, friction = energy_and_powers(scene, equations, v_reg, motion)
+    found = compute_energy(motion)
+    np.testing.assert_allclose(found.stored, energy, rtol=1e-10, atol=1e-12 * energy.max())
+    np.testing.assert_allclose(found.ground, shaking, rtol=1e-9, atol=1e-9 * np.abs(shaking).max())
     assert np.all(friction <= 1e-12 * np.abs(shaking).max())
     works = [np.cumsum((0.5 * width * weights).ravel() * power)[2::3] for power in (shaking + friction, abs(shaking))]
     # energy at the cells' ends, where works are whole, by the parabola through the three nodes of the cell
