@@ -194,6 +194,9 @@ def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
         expected = 1.5 * change * (1.0 + contact_lag(LEVELS[0], MODEL)) + LEVELS[0].penetration * stiff.value
         expected += 0.0 if outcome == Outcome.OK else np.inf
         np.testing.assert_allclose(compliance_error(stiff, run, LEVELS[0], MODEL), expected)
+    response = np.sqrt(LEVELS[0].penetration * BRIEF.radius / GRAVITY)  # s, of the contact
+    relaxation = BRIEF.masses[0] * 1e-3 / (BRIEF.friction_coefficient * BRIEF.total_mass * GRAVITY)  # s, of friction
+    assert contact_lag(LEVELS[0], MODEL) == pytest.approx(response / relaxation)
 
 
 def test_the_error_of_levels_is_what_richardson_says() -> None:

@@ -156,6 +156,15 @@ def test_every_link_leads_to_a_part_of_the_page_that_it_names(last_report: Last)
     assert ("index.html", "", "conditioning") in links
 
 
+def test_every_bar_has_the_name_of_its_effect(last_report: Last) -> None:
+    folder, write, _ = last_report
+    write()
+    first = page_of(folder, "index.html").split('<table class="waterfall')[1].split("</table>")[0]
+    names = [re.sub("<.*?>", "", name) for name in re.findall(r'<th scope="row">(.*?)</th>', first)]
+    effects = ["geometry", "regularized friction", "elastic contact", "turning of the bodies"]
+    assert names == [*effects, "= total"]
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("place", [*places()], ids=lambda place: f"{place.said} {place.name}".replace(" ", "-"))
 def test_what_raises_in_a_part_costs_that_part_alone(
