@@ -106,6 +106,7 @@ def test_each_level_has_a_whole_report_that_names_it(
         assert (f"{grid} × {grid} phases of the equations" in page) == (number < 3)
     first, second = (run.out.index(f"Level {number} of 3: {run.report / 'index.html'}\n") for number in (1, 2))
     assert "fig3-I, platform" in run.out[first:second]
+    assert "goes on with it" not in run.out, "it is complete"
     again = command(*WORDS)
     assert (again.code, "of 3: " in again.out) == (0, False), "a repeated run writes the last level alone"
 

@@ -314,7 +314,8 @@ def test_values_that_are_none_cost_no_other_model_its_report(command: Callable[.
     assert (run.code, run.err) == (0, "")
     scene = summary_of(run.report)["scenes"][0]
     assert [row for row in scene["differences"] if row["pair"] not in keys] == others
-    shown = run.out + page_of(run.report) + (run.report / "summary.md").read_text(encoding="utf-8")
+    page = page_of(run.report)
+    shown = run.out + page + (run.report / "summary.md").read_text(encoding="utf-8")
     assert not re.search(r"\b(inf|nan) ?%|\be\+\d", shown)
     for key, function in keys.items():
         outcome, model = ABSURD[function], scene["models"][key]
@@ -323,6 +324,7 @@ def test_values_that_are_none_cost_no_other_model_its_report(command: Callable[.
             why = f"no usable value by {key} (your engine) ({ALL} × {outcome})."
             assert f"{key} (your engine) is not compared with the exact equations, v_reg: {why}" in run.out
             assert (model["cap_share"], model["travel_share"]) == (None, None)
+        assert f'<p class="engine">fig3-I, platform: {key} (your engine) ' in page
 
 
 @pytest.mark.parametrize(

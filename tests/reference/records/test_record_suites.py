@@ -50,6 +50,14 @@ def test_motions_of_a_directory_beside_the_scene_are_numbered_and_labeled_by_nam
     assert Scene.model_validate(second.model_dump(exclude_none=True)) == second
 
 
+def test_csv_files_of_a_column_without_direction_are_components_by_their_names(folder):
+    for number, word in enumerate("EN", start=1):
+        rows = f"time [s],acceleration [m/s^2]\n0,0\n1,0.{number}\n2,0\n"
+        (folder / "empty" / f"quake-{word}.csv").write_text(rows)
+    scene = load_scene(written(folder, 'suite = "empty", motion = 1'))
+    assert scene.record[1, 1:].tolist() == [0.1, 0.2, 0.0]
+
+
 def at2_files(folder, *names):
     """Each with its number from 1, g, in its samples."""
     folder.mkdir()
