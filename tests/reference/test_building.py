@@ -119,6 +119,9 @@ def test_buildings_that_differ_in_friction_alone_have_a_line_of_it_for_each() ->
         "  friction: 0.045 at rest, 0.09 at high speed, rate 50 s/m (upper bound)",
         "  friction: 0.07 at every speed (design)",
     ]
+    falling = scene.with_values({"isolator.friction": {"slow": 0.08, "fast": 0.05, "rate": 30.0}})
+    said = "  friction: 0.08 at rest, 0.05 at high speed, rate 30 s/m"
+    assert said in word_buildings([describe_building(falling)])
     oil = scene.with_values({"isolator.friction": None, "isolator.lubrication": 0.5})
     many = [oil, *(scene.with_values({"isolator.friction": value}) for value in (0.05, 0.02, 0.07))]
     for others, said in (

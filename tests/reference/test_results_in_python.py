@@ -13,7 +13,7 @@ from chains import chain, refusal
 import multibody
 import reference
 from reference.problem import Amplification
-from reference.problem.phases import phase_coordinates
+from reference.problem.phases import phase_axis, phase_coordinates
 from reference.support import drawing
 from reference.support.html_table import html_table
 
@@ -70,6 +70,11 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     assert loose["mu"].dims == ("phase_1", "phase_2", "body")
 
 
+@pytest.mark.parametrize("points", [2.5, 2.0, 0, 10_001, "2", None])
+def test_an_axis_of_phases_has_a_whole_number_of_them(points):
+    assert "must be a whole number from 1 to 10000" in str(refusal(phase_axis, points))
+
+
 def test_a_motion_is_labeled_with_units(motion):
     data = motion.to_xarray()
     np.testing.assert_array_equal(data["position"].sel(body=2, axis="x"), motion.position[:, 1, 0])
@@ -80,6 +85,9 @@ def test_a_motion_is_labeled_with_units(motion):
     assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry[duration=3]", "ok")
     assert np.isin(np.linspace(0.0, 3.0, 215), motion.time).all(), "64 instants in 0.9 s, and those of the steps"
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"
+    forces = np.arange(3.0 * len(motion.time)).reshape(-1, 3)
+    on_three = replace(motion, extra={"support_force": forces}).to_xarray()
+    np.testing.assert_array_equal(on_three["support_force"].sel(support=3), forces[:, 2])
 
 
 def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):

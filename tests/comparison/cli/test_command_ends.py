@@ -81,7 +81,9 @@ def test_an_unexpected_error_is_exit_3_and_one_line(tmp_path: Path) -> None:
     assert err.startswith("unexpected error: ZeroDivisionError: two lines; details: ")
     details = Path(err.split("details: ")[1].strip())
     assert details.parent == tmp_path
-    assert "Traceback" in details.read_text(encoding="utf-8")
+    text = details.read_text(encoding="utf-8")
+    assert "Traceback" in text
+    assert text.count("  File ") > 1, "every call down to the error"
 
 
 @POSIX

