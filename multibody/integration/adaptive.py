@@ -246,6 +246,8 @@ class _AdaptiveRun:
         if self.integration.keep:
             self.run.chunks.append(motion.cut_at(row))
         if outcome != Outcome.OK:
+            if self.integration.keep:  # the peaks of a motion are those of all its rows
+                record_steps(self.run, motion.cut_at(row), size[: row + 1], self.model, self.level, read)
             self.run.terminate(outcome, instant)
             return False
         record_steps(self.run, motion, size, self.model, self.level, read)

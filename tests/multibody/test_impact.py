@@ -233,6 +233,12 @@ def test_the_first_contact_that_opens_or_comes_closer_overlapping_is_an_event() 
 PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
 
 
+@pytest.mark.parametrize(("stated", "found"), [(None, 0.0), (0.0, 0.0), (0.4, 0.4)])
+def test_supports_that_close_rebound_by_a_stated_restitution_alone(stated: float | None, found: float) -> None:
+    scene = load_scene("fig3-I").with_values({"isolator.restitution": stated})
+    assert assemble(scene, "spatial", 1e-3).impact.restitution == found
+
+
 def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45) -> Scene:
     """One body over its supports, thrown off by a plate that moves up and down only."""
     load = [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]

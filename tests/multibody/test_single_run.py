@@ -25,7 +25,7 @@ SCENE = load_scene("fig3-I").with_values({"duration": 1.0})
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_the_run_at_the_second_level_has_the_peaks_of_the_answer(model: str) -> None:
     levels = multibody.levels(SCENE, model)
-    for second, asked in ((levels[1], None), (levels[2], levels[1:])):
+    for second, asked in ((levels[1], None), (levels[2], tuple(levels[1:]))):
         answer = multibody.amplification(SCENE, [PHASE], model, levels=asked)
         run = multibody.single_run(SCENE, PHASE, model, level=second)
         assert answer.status[0] == run.status == Outcome.OK

@@ -73,6 +73,8 @@ def test_a_stored_motion_ends_before_the_travel() -> None:
         assert np.hypot(*motion.position[:, 0, :2].T).max() <= 0.05
         assert motion.time[-1] <= motion.instant <= motion.time[-1] + 5e-3
         assert np.isnan(reference.demands(motion).displacement.value)
+        size = np.linalg.norm(motion.absolute_acceleration, axis=2).max(axis=0)
+        np.testing.assert_allclose(motion.peak, size, rtol=1e-3, err_msg="no more and no less than its rows")
 
 
 def test_a_travel_close_to_the_largest_displacement_is_settled() -> None:

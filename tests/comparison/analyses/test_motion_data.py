@@ -32,7 +32,7 @@ from comparison.analyses.motions.page_data import (
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import trace_contact_paths
-from reference.problem import Scene, Trajectory, load_scene
+from reference.problem import Outcome, Scene, Trajectory, load_scene
 
 PHASE = (2.0, 0.7)
 
@@ -177,6 +177,11 @@ def slides(scene: Scene, phase: object, tolerance: float, **settings: object) ->
     return replace(motion, absolute_acceleration=turning, position=0.05 * turning[::-1], contact_force=first[:, 0])
 
 
+def ended(*words: Any, **settings: object) -> Trajectory:
+    """The same motion, which ends at the travel."""
+    return replace(slides(*words, **settings), status=Outcome.TRAVEL_REACHED)
+
+
 def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     model = replace(SMALL, trajectory="test_motion_data:slides", settings={"cutoff": 1e-3})
     rest = 1e-3, MotionPlace("fig3-I", 0, 0, "why"), (0.0, 0.0)
@@ -186,6 +191,9 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     peaks += [np.linalg.norm(part, axis=1).argmax() for part in (whole.position[:, 0], whole.isolator_force)]
     assert (motion.status, motion.error_message) == ("ok", "")
     assert set(whole.time[peaks]) <= set(motion.time), "peaks of bodies, displacement and force are kept as they are"
+    early = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:ended"), *rest))
+    assert motion.spectra is not None, "of the whole motion"
+    assert (early.status, early.spectra) == (Outcome.TRAVEL_REACHED, None)
     missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")
 

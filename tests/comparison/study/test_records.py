@@ -61,6 +61,7 @@ def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
     scene = on_bars()
     *_, spatial, softened = with_steps_of_scenes(MODEL_HIERARCHY, [scene])
     assert softened.most == spatial.most
+    assert softened.settings == {**spatial.settings, "softened": True}
     assert estimate_point_seconds(scene, softened) == pytest.approx(0.22 / 20.0), "1 s of 20, two bodies"
     taller = PLAIN.with_values({"bodies": [*PLAIN.bodies, PLAIN.bodies[-1]]})
     assert estimate_point_seconds(taller, spatial) == pytest.approx(1.5 * 0.22)
