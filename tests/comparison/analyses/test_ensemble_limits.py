@@ -40,7 +40,7 @@ from comparison.analyses.ensemble.result import (
     Structure,
     SupportExtremes,
 )
-from comparison.analyses.ensemble.rows import make_demand_rows
+from comparison.analyses.ensemble.rows import make_demand_rows, summarize_demand
 from comparison.analyses.ensemble.sentences import answer_sentence, drift_warning, limits_sentence, support_sentences
 from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.runner.progress import make_wide_console
@@ -297,6 +297,10 @@ def test_a_motion_that_reached_the_travel_breaks_a_limit_up_to_the_travel() -> N
     ]
     assert "not met (by more than 0 %)" in said_of(reached, displacement=0.45)[0]
     assert said_of(reached, displacement=0.46)[0].endswith("not compared (1 motion has no value)")
+    twice = with_travel(0.45, 0.30, None, 0.40, None)
+    stripe = replace(twice.stripes[0], known=[Statistic(0.35, 0.0), Statistic(0.40, 0.0)])
+    least, *_ = summarize_demand(twice.structures[0], stripe).numbers
+    assert least.value == pytest.approx((0.30 + 0.40 + 2 * 0.45) / 4), "both motions have at least the travel"
     other = with_travel(0.45, 0.30, None, 0.43, why="step limit")
     mixed = replace(other, stripes=[replace(other.stripes[0], reasons={"step limit": 1, "travel reached": 1})])
     assert "at least 450 mm, allowed 440 mm: not met" in said_of(mixed, displacement=0.44)[0], "at it is one of them"
@@ -539,7 +543,10 @@ def test_an_ensemble_is_compared_with_an_earlier_one(folder: Path, capsys: Any) 
     assert " 0 not met, 0 not compared" in capsys.readouterr().err.splitlines()[-1]
     Path("block.toml").write_text(SCENE.replace("radius = 2.0", "radius = 1.9"))
     assert run("block.toml", "--against", "before", "--within", "1e-4") == 1
-    assert "not met (by " in capsys.readouterr().err.splitlines()[-1]
+    line = capsys.readouterr().err.splitlines()[-1]
+    numbers = re.search(r"over rho, mean, scale 1: ([\d.]+) %, stored ([\d.]+) %: not met \(by \+", line)
+    assert numbers
+    assert 1.0 < float(numbers[1]) / float(numbers[2]) < 2.0 / 1.9, "the new one first, as its radius is less"
     assert run("block.toml", "--against", "before", "--within", "0.5") == 0
 
 
