@@ -6,14 +6,16 @@ import re
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
+from shutil import copyfile
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from runs import Here
 from scipy.integrate import solve_ivp
-from scipy.io import savemat
+from scipy.io import loadmat, savemat
 from scipy.special import ellipk
 
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
@@ -78,6 +80,18 @@ def save(folder: Path, grams: int, offset: float = 0.0) -> None:
     time, plate, base = shaken(1e-3 * grams)
     savemat(folder / f"s_b_{grams}g_x.mat", {"t": time[:, None], "x": plate[:, None] + offset})
     savemat(folder / f"s_b_{grams}g_y.mat", {"t": time[:, None], "y": base[:, None]})
+
+
+def test_runs_are_in_the_order_of_weights_and_may_hold_whole_numbers(tmp_path, monkeypatch):
+    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
+    save(tmp_path, 250)
+    for grams, file in product((1050, 90), (X, Y)):
+        copyfile(tmp_path / file, tmp_path / file.replace("250", str(grams)))
+    found = loadmat(tmp_path / X)
+    savemat(tmp_path / X, {"t": found["t"], "x": found["x"].round().astype(np.int16)})
+    runs = read_folder(tmp_path).runs
+    assert [run.weight for run in runs] == [0.09, 0.25, 1.05]
+    np.testing.assert_array_equal(runs[1].plate, found["x"].round().ravel())
 
 
 def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
@@ -449,6 +463,12 @@ def make(folder: Path) -> Path:
     return folder
 
 
+def shift(folder: Path, seconds: float) -> None:
+    """Let the clock of the base be wrong."""
+    found = loadmat(folder / Y)
+    savemat(folder / Y, {"t": found["t"] + seconds, "y": found["y"]})
+
+
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
@@ -456,6 +476,8 @@ def make(folder: Path) -> Path:
         (lambda folder: (folder / X).unlink(), "s_b_250g_x.mat is missing"),
         (lambda folder: savemat(folder / X, {"t": np.arange(700.0), "x": np.zeros((700, 3))}), "x must be one column"),
         (lambda folder: (folder / Y).write_bytes(b"MATLAB 5.0" + bytes(range(256)) * 4), "must be a MATLAB file"),
+        (lambda folder: shift(folder, 0.01), "t must be the same as in s_b_250g_x.mat"),
+        (lambda folder: shift(folder, -0.01), "t must be the same as in s_b_250g_x.mat"),
         (lambda folder: [file.unlink() for file in folder.iterdir()], "holds none of the measured files"),
         (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
         (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350"),
