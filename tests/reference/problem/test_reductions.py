@@ -31,6 +31,7 @@ ALONE = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "iso
 SMOOTH = {"isolator.friction": 0.0}
 OIL = {"isolator.friction": None, "isolator.lubrication": 0.1}
 UPRIGHT = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]}
+UPRIGHT_ONCE = {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0], [0.0, 0.5]]}
 OBLIQUE = {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4]]}
 ALIKE = {**OBLIQUE, "bodies.1.period": [1.5, 1.5]}
 ALONG_X = {"excitation.amplitudes": [[1.0, 0.5], [0.0, 0.0]]}
@@ -124,11 +125,14 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     (is_linear, law(fast=0.0, rate=10.0), False, "dry friction"),
     (is_linear, {**SMOOTH, "bodies.1.damping": 0.1}, False, "damped links"),
     (is_linear, {**SMOOTH, **UPRIGHT}, False, "vertical loading"),
+    (is_linear, {**SMOOTH, **UPRIGHT_ONCE}, False, "vertical loading"),
     (is_linear, {**SMOOTH, "bodies.1.period": [1e-3, 1.2]}, True, "no friction, no vertical loading"),
     (is_linear, {**SMOOTH, "bodies.1.period": [5e-4, 1.2]}, False, "more than 200000 rad of the fastest vibration"),
     (has_half_turn_symmetry, UPRIGHT, False, "vertical loading"),
+    (has_half_turn_symmetry, UPRIGHT_ONCE, False, "vertical loading"),
     (has_half_turn_symmetry, {}, True, "no vertical loading"),
     (has_one_axis_per_harmonic, UPRIGHT, False, "vertical loading"),
+    (has_one_axis_per_harmonic, UPRIGHT_ONCE, False, "vertical loading"),
     (has_one_axis_per_harmonic, TWICE_SHAKEN, True, "each harmonic has its own axis"),
     (has_one_axis_per_harmonic, {"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]}, False, "a harmonic acts"),
     (has_one_axis_per_harmonic, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
@@ -166,6 +170,7 @@ def test_a_record_has_no_harmonics_to_leave_out() -> None:
         with pytest.raises(ValueError, match="recorded motion"):
             asked()
     assert find_unused_harmonics(FIG3.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]})) == [1]
+    assert find_unused_harmonics(FIG3.with_values(UPRIGHT_ONCE)) == [], "it acts, vertically alone"
 
 
 @pytest.mark.parametrize(

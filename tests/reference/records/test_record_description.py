@@ -144,6 +144,9 @@ def test_the_zero_line_is_taken_off_when_asked_for(tmp_path):
     line = samples(3.0 + 0.2 * TIME**2, time=TIME**2)
     subtract_zero_line(line, "linear")
     assert np.abs(line[:, 1]).max() < 1e-9, "at unequal steps, too"
+    every = np.column_stack([TIME, 0.3 + SHAKING, 0.2 - SHAKING, 0.1 + SHAKING])
+    subtract_zero_line(every, "mean")
+    np.testing.assert_allclose(every[:, 1:].mean(axis=0), 0.0, atol=1e-14)
     assert 'times 2, detrend = "mean"' in str(describe_record(mean))
 
 
