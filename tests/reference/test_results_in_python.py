@@ -112,6 +112,7 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     assert solid.get_xlim()[1] < 3.0 < solid.get_ylim()[1]
     ticks = solid.get_xticklabels(), solid.get_yticklabels()
     assert ["π/2" in {label.get_text() for label in labels} for labels in ticks] == [False, True]
+    assert len({label.get_text() for label in ticks[1]}) == len(ticks[1]), "no label twice"
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
     plt.close("all")

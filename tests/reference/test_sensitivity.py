@@ -259,6 +259,15 @@ def test_a_derivative_says_which_reading_its_quantity_has() -> None:
     assert demand["bodies.1.mass"].value.shape == (1,)
 
 
+def test_each_of_several_quantities_has_its_own_error() -> None:
+    def both(scene: Scene) -> list[Estimate]:
+        return [Estimate(scene.total_mass, 1e-9), Estimate(2.0 * scene.total_mass, 1e-5)]
+
+    found = sensitivity(ONE_BODY, ["bodies.0.mass"], both)["bodies.0.mass"]
+    np.testing.assert_allclose(found.value, [1.0, 2.0], rtol=1e-3)
+    assert found.error[1] > 100.0 * found.error[0] > 0.0
+
+
 def test_long_work_says_on_standard_error_what_is_left(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
