@@ -243,14 +243,13 @@ class _AdaptiveRun:
         as smaller steps follow. read: whether peaks are read in these steps.
         """
         outcome, row, instant = find_termination(motion, self.model)
+        motion, size = motion.cut_at(row), size[: row + 1]
         if self.integration.keep:
-            self.run.chunks.append(motion.cut_at(row))
+            self.run.chunks.append(motion)
+        record_steps(self.run, motion, size, self.model, self.level, read)
         if outcome != Outcome.OK:
-            if self.integration.keep:  # the peaks of a motion are those of all its rows
-                record_steps(self.run, motion.cut_at(row), size[: row + 1], self.model, self.level, read)
             self.run.terminate(outcome, instant)
             return False
-        record_steps(self.run, motion, size, self.model, self.level, read)
         self.at.state, self.at.time = motion.state_at(-1), float(motion.time[-1])
         if settle:
             self.at.state = self.model.settle(self.at.state, gap_rate_at_end(motion), self.level.penetration)
