@@ -177,7 +177,7 @@ def slides(scene: Scene, phase: object, tolerance: float, **settings: object) ->
     return replace(motion, absolute_acceleration=turning, position=0.05 * turning[::-1], contact_force=first[:, 0])
 
 
-def ended(*words: Any, **settings: object) -> Trajectory:
+def slides_to_the_travel(*words: Any, **settings: object) -> Trajectory:
     """The same motion, which ends at the travel."""
     return replace(slides(*words, **settings), status=Outcome.TRAVEL_REACHED)
 
@@ -191,7 +191,7 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     peaks += [np.linalg.norm(part, axis=1).argmax() for part in (whole.position[:, 0], whole.isolator_force)]
     assert (motion.status, motion.error_message) == ("ok", "")
     assert set(whole.time[peaks]) <= set(motion.time), "peaks of bodies, displacement and force are kept as they are"
-    early = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:ended"), *rest))
+    early = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:slides_to_the_travel"), *rest))
     assert motion.spectra is not None, "of the whole motion"
     assert (early.status, early.spectra) == (Outcome.TRAVEL_REACHED, None)
     missing = compute_stored_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))

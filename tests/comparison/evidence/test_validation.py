@@ -82,18 +82,6 @@ def save(folder: Path, grams: int, offset: float = 0.0) -> None:
     savemat(folder / f"s_b_{grams}g_y.mat", {"t": time[:, None], "y": base[:, None]})
 
 
-def test_runs_are_in_the_order_of_weights_and_may_hold_whole_numbers(tmp_path, monkeypatch):
-    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
-    save(tmp_path, 250)
-    for grams, file in product((1050, 90), (X, Y)):
-        copyfile(tmp_path / file, tmp_path / file.replace("250", str(grams)))
-    found = loadmat(tmp_path / X)
-    savemat(tmp_path / X, {"t": found["t"], "x": found["x"].round().astype(np.int16)})
-    runs = read_folder(tmp_path).runs
-    assert [run.weight for run in runs] == [0.09, 0.25, 1.05]
-    np.testing.assert_array_equal(runs[1].plate, found["x"].round().ravel())
-
-
 def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 450, offset=-0.15)
     cycles = frame.fold_run(read_folder(tmp_path).runs[0])
@@ -456,6 +444,18 @@ def test_page_and_terminal_have_the_recorded_table(capsys: pytest.CaptureFixture
 
 
 X, Y = "s_b_250g_x.mat", "s_b_250g_y.mat"
+
+
+def test_runs_are_in_the_order_of_weights_and_may_hold_whole_numbers(tmp_path, monkeypatch):
+    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
+    save(tmp_path, 250)
+    for grams, file in product((1050, 90), (X, Y)):
+        copyfile(tmp_path / file, tmp_path / file.replace("250", str(grams)))
+    found = loadmat(tmp_path / X)
+    savemat(tmp_path / X, {"t": found["t"], "x": found["x"].round().astype(np.int16)})
+    runs = read_folder(tmp_path).runs
+    assert [run.weight for run in runs] == [0.09, 0.25, 1.05]
+    np.testing.assert_array_equal(runs[1].plate, found["x"].round().ravel())
 
 
 def make(folder: Path) -> Path:

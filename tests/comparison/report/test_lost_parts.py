@@ -145,10 +145,15 @@ def test_a_report_of_which_every_part_raises_is_written(last_report: Last, capsy
     assert not re.search(r"\bNone\b", shown), "nothing stands in their place"
 
 
-def test_every_link_leads_to_a_part_of_the_page_that_it_names(last_report: Last) -> None:
+@pytest.fixture(scope="module")
+def shown(last_report: Last) -> dict[str, str]:
+    """Both pages of the report, whole, by name."""
     folder, write, _ = last_report
     write()
-    shown = {name: page_of(folder, name) for name in PAGES}
+    return {name: page_of(folder, name) for name in PAGES}
+
+
+def test_every_link_leads_to_a_part_of_the_page_that_it_names(shown: dict[str, str]) -> None:
     links = [(name, *link) for name in PAGES for link in re.findall(r'href="([\w.-]*)#([\w-]+)"', shown[name])]
     assert len(links) > 20
     assert [link for link in links if f'id="{link[2]}"' not in shown[link[1] or link[0]]] == []
@@ -156,10 +161,8 @@ def test_every_link_leads_to_a_part_of_the_page_that_it_names(last_report: Last)
     assert ("index.html", "", "conditioning") in links
 
 
-def test_every_bar_has_the_name_of_its_effect(last_report: Last) -> None:
-    folder, write, _ = last_report
-    write()
-    first = page_of(folder, "index.html").split('<table class="waterfall')[1].split("</table>")[0]
+def test_every_bar_has_the_name_of_its_effect(shown: dict[str, str]) -> None:
+    first = shown["index.html"].split('<table class="waterfall')[1].split("</table>")[0]
     names = [re.sub("<.*?>", "", name) for name in re.findall(r'<th scope="row">(.*?)</th>', first)]
     effects = ["geometry", "regularized friction", "elastic contact", "turning of the bodies"]
     assert names == [*effects, "= total"]
