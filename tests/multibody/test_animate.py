@@ -262,10 +262,11 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
     position = share * [[0.01, -0.02, 0.001], [0.03, 0.04, 0.002]]
     turns = share * [[1e-3, -2e-3, 4e-3], [2e-3, 1e-3, -3e-3]]
     motion: Any = SimpleNamespace(time=np.array([0.0, 0.1, 0.4]), position=position, extra={"turns": turns})
-    shown, made, canvas_of = [], [], film_module.FigureCanvasAgg
+    shown, made, drawn_again, canvas_of = [], [], [], film_module.FigureCanvasAgg
 
     def canvas(figure: Any) -> Any:
         made.append(figure)
+        monkeypatch.setattr(figure, "draw_artist", drawn_again.append)
         return canvas_of(figure)
 
     def gif(pictures: Iterator[Any], *rest: Any) -> bytes:
@@ -280,6 +281,8 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(film_module, "_encode_gif", gif)
     draw_film(scene, motion, "spatial", FilmSettings(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
+    moves = figure.findobj(lambda artist: artist.get_animated())
+    assert set(drawn_again) == set(moves) and len(drawn_again) == 4 * len(moves), "the typical picture and three frames"
     assert figure.get_suptitle() == (
         f"{escape_for_matplotlib(scene.title)}: spatial model of the engine\n"
         "displacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"

@@ -210,6 +210,23 @@ def test_a_look_ahead_begins_a_period_behind_the_last_large_value(monkeypatch: p
     assert (quiet, run.outcome, run.instant) == ([False, True, False, False], Outcome.STEP_LIMIT, 9.0)
 
 
+def test_a_look_ahead_that_fails_near_no_large_value_is_no_quiet_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The run goes on in accurate steps behind the failure, and fails itself or not."""
+    begun: list[tuple[EngineRun, float]] = []
+
+    def failed(integration: Integration, run: EngineRun, at: Checkpoint, pause: Any) -> Checkpoint:
+        begun.append((run, at.time))
+        if len(begun) > 1:
+            run.terminate(Outcome.SOLVER_FAILED, 11.0)
+        return replace(at, time=(9.0, 11.0, 12.0)[len(begun) - 1])
+
+    monkeypatch.setattr(look_ahead, "continue_run", failed)
+    scene = load_scene("fig3-I")
+    run = PhasePair(scene, assemble(scene, "translational", 1e-3), np.zeros(2)).run_level(LEVEL, Budget(1e6))
+    assert [(each is run, begin) for each, begin in begun] == [(True, 0.0), (False, 9.0), (True, 9.0)]
+    assert (run.outcome, run.instant) == (Outcome.SOLVER_FAILED, 11.0)
+
+
 def test_neither_heat_nor_a_dense_record_is_looked_over() -> None:
     """Two steps fit into the shortest interval; what heat has lowered does not come back."""
     for heat, knots, asks in (

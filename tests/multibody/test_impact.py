@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scenes_at_hand import assert_agree, one_body
 from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 import multibody
 from multibody.integration.engine_run import Budget, EngineRun
@@ -66,6 +67,19 @@ def test_an_oblong_block_that_is_turned_is_hit_as_one_of_exchanged_moments() -> 
     ]
     np.testing.assert_allclose(found[0], found[1], atol=1e-12)
     assert np.abs(found[2] - found[1]).max() > 0.01
+
+
+def test_an_impact_turns_with_the_block_and_its_corners() -> None:
+    """All by the same yaw, between no turn and a quarter; of three different moments of inertia."""
+    turned = Rotation.from_euler("z", 0.6).as_matrix()
+    before = np.array([0.1, 0.2, -0.5, 0.3, -0.4, 0.1])
+    found = []
+    for turn in (np.eye(3), turned):
+        law = replace(block(friction=0.3), inertias=np.array([[0.9, 0.4, 0.7]]), axes=turn[None])
+        law = replace(law, depressions=Depressions(CORNERS @ turn[:2, :2].T, CENTER, RADIUS, np.empty(0, np.int_)))
+        after, _ = law.solve_impact(np.zeros(6), (before.reshape(2, 3) @ turn.T).ravel(), LEFT, RIGHT)
+        found.append(after.reshape(2, 3) @ turn)
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9)
 
 
 @pytest.mark.parametrize("underside", [Depressions, FlatUnderside])

@@ -15,7 +15,7 @@ from multibody.integration.constant_step import EngineSolver, silence_engine
 from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models import assembly
-from multibody.models.engine import reset_when_unused
+from multibody.models.engine import exudyn, reset_when_unused
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
@@ -120,6 +120,14 @@ def test_contact_forces_settle_where_steps_become_smaller() -> None:
     shorter = [after < 0.5 * before for before, after in pairwise(steps)]
     assert settled == [chunk.coordinates[-1, 0] for chunk, less in zip(run.chunks, shorter) if less]
     assert 0 < len(settled) < len(run.chunks) / 2
+
+
+@pytest.mark.parametrize("speaks", [True, False])
+def test_the_engine_speaks_as_before_behind_a_call_that_fails(speaks: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(exudyn.config, "printToConsole", speaks)
+    with pytest.raises(ValueError, match="model"):
+        multibody.trajectory(SCENE, PHASE, "planar")
+    assert exudyn.config.printToConsole == speaks
 
 
 def test_an_unstable_run_is_no_answer() -> None:
