@@ -282,7 +282,8 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
     draw_film(scene, motion, "spatial", FilmSettings(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
     moves = figure.findobj(lambda artist: artist.get_animated())
-    assert set(drawn_again) == set(moves) and len(drawn_again) == 4 * len(moves), "the typical picture and three frames"
+    assert set(drawn_again) == set(moves)
+    assert len(drawn_again) == 4 * len(moves), "the typical picture and three frames"
     assert figure.get_suptitle() == (
         f"{escape_for_matplotlib(scene.title)}: spatial model of the engine\n"
         "displacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"

@@ -3,6 +3,7 @@
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from places import scene_text
 from rich.console import Console
 
 from comparison.analyses.assumptions import command, statements, trials, validity
-from comparison.analyses.assumptions.feature import assumption_panels
+from comparison.analyses.assumptions.feature import assumption_panels, section_context
 from comparison.analyses.assumptions.statements import (
     NO_EFFECT,
     STATED,
@@ -449,12 +450,32 @@ def test_panels_show_signed_changes_with_errors_and_bands() -> None:
     assert panel["plot"]["y"]["title"] == "largest change of μ_i, %"
 
 
+def test_a_section_tells_the_directions_of_its_scene_alone() -> None:
+    other = FIRST.with_values({"name": "other", "title": "Other"})
+    cells = [cell(Variation(ring=2.0), 0.1), replace(cell(Variation(ring=2.0), 0.2), scene="other")]
+    trials = [
+        replace(BLIND, variation=Variation(offset=size), scene=name)
+        for size, name in ((0.1, "fig3-I"), (0.2, "other"), (0.3, "other"))
+    ]
+    found: Any = SimpleNamespace(assumptions=found_of(cells, trials))
+    report: Any = SimpleNamespace(results=found, study=SimpleNamespace(scenes=(FIRST, other)))
+    told = {each["name"]: each["directions"] for each in section_context(report)["assumption_scenes"]}
+    assert told == {
+        name: [describe_direction(scene, trial) for trial in trials if trial.scene == name]
+        for name, scene in (("fig3-I", FIRST), ("other", other))
+    }
+    assert [len(lines) for lines in told.values()] == [1, 2]
+
+
 def test_cells_compare_the_two_engine_models() -> None:
     keys = "isolator.supports", "isolator.ring", "isolator.sphere_radius"
-    bare = FIRST.with_values({"name": "bare", **dict.fromkeys(keys)})
+    bare = FIRST.with_values({"name": "bare", "duration": 1.5, **dict.fromkeys(keys)})
     study = Study((FIRST, bare), 2, 1e-3, fake_hierarchy(gap=0.0))
     found = collected(Assumptions(), study)
     assert [each.variation for each in found.cells][: len(FEW)] == list(FEW)
+    assert found.duration == 6.0, "of the longest scene"
+    brief = Study((FIRST.with_values({"duration": 2.5}), bare), 2, 1e-3, fake_hierarchy())
+    assert collected(Assumptions(FEW[:1], directed=()), brief).duration == 2.5
     assert {each.scene for each in found.directions} == {FIRST.name}, "whatever is shortened to compute them"
     assert {(each.key, each.worst) for each in found.directions} == {
         (key, worst) for key in DIRECTED for worst in (True, False)

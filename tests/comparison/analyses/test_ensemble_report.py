@@ -311,6 +311,16 @@ def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
     assert "which the exact equations have not, is worth up to 30 % (isolator displacement" in regularized
 
 
+def test_a_smallest_support_force_is_no_demand_that_turning_changes() -> None:
+    """A share of a force near zero: it has a clause of its own."""
+    forces = {"exact": (9.0, 8.0, 4.0, 2.0), "spatial": (9.0, 8.0, 3.6, 1.0), "translational": (9.0, 8.0, 4.0, 2.0)}
+    said = trust.model_ratio_sentence(with_demand(planted(), "support_force_min", None, **forces))
+    assert said.endswith(
+        "bodies that turn on their supports change a demand by up to 4.8 % (isolator displacement, m3), and the "
+        "smallest support force, against statics, by up to 50 % (m4)."
+    )
+
+
 def with_demand(found: EnsembleResult, quantity: str, body: int | None, **models: Sequence[float]) -> EnsembleResult:
     """Another demand of every motion by these models, with its statistics by the equations."""
     names = [each.motion for each in found.suite]
@@ -607,6 +617,16 @@ def test_the_literal_supremum_is_a_row_only_where_it_differs(folder: Path, found
     assert profile({})[0] == []
     assert profile({})[1].startswith("At every floor the literal supremum is the acceleration as integrated")
     assert profile({1: 1.1, 2: 1.1, 3: 1.1}) == (["roof", "body 2", "deck"], "")
+    both = [replace(planted().structures[0], name=name) for name in ("b", "c")]
+    suprema = {"acceleration": 2.0, "acceleration_supremum": 2.0}, {"acceleration": 2.0, "acceleration_supremum": 2.5}
+    stripes = [
+        replace(planted().stripes[0], structure=each.name, quantity=name, body=1, mean=Statistic(mean, 0.001))
+        for each, means in zip(both, suprema)
+        for name, mean in means.items()
+    ]
+    tables = page._height_context(replace(planted(), structures=both, stripes=stripes), LostParts())["tables"]
+    rows_of_both = [(row.name, row.bound) for row in tables[-1][1]]
+    assert rows_of_both == [("deck", "b"), ("deck", "c"), ("deck", "envelope")], "of a floor where those of one differ"
 
 
 def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: EnsembleResult) -> None:

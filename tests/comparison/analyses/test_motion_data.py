@@ -79,6 +79,23 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
         assert (np.abs(lines - columns) <= 1.001 * MAX_DECIMATION_ERROR * analysis.half_range(columns)).all(), name
 
 
+def test_the_page_finds_every_column_of_every_motion_among_the_packed_numbers(scene) -> None:
+    """By the layout that the module states: first value and differences, in units of a power of two."""
+    motions = [stored(scene, model) for model in (SMALL, SPATIAL)]
+    numbers = np.frombuffer(encode_motions(found(*motions)), "<i4")
+    [place] = list_pairs_with_motions(found(*motions), scene)
+    for motion, about in zip(motions, place["motions"], strict=True):
+        for name, (first, width) in about["blocks"].items():
+            expected = motion.series_by_name()[name]
+            assert width == expected.shape[1]
+            for column in range(width):
+                begin = about["start"] + about["count"] * (first + column)
+                read = np.cumsum(numbers[begin : begin + about["count"]]) * 2.0 ** about["exponents"][first + column]
+                np.testing.assert_allclose(
+                    read, expected[:, column], rtol=1e-6, atol=1e-3 * np.ptp(expected[:, column])
+                )
+
+
 def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
     motion = multibody.trajectory(scene, PHASE, "spatial")
     geometry = contact_geometry(scene)

@@ -114,6 +114,9 @@ def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: p
         everywhere | {"matplotlib", "pillow", "xarray"} | {f"source of {name}" for name in sources}
         | {"source of comparison.surfaces.figures"}
     )  # fmt: skip
+    with monkeypatch.context() as patched:
+        patched.setattr(environment, "_read_processor_name", lambda: "a processor")
+        assert describe_provenance()["processor"] == "a processor"
     said = {"--show-toplevel": str(ROOT), "HEAD": "0123abc"}
     for changed, commit in (("", "0123abc"), (" M a.py", "0123abc with uncommitted changes")):
         monkeypatch.setattr(

@@ -270,6 +270,36 @@ def test_a_process_runs_the_tasks_of_one_group(monkeypatch: pytest.MonkeyPatch) 
         assert [pool.start(str, group=group).result() for group in ("", "a", "", "b", "a")] == [0, 1, 0, 2, 1]
 
 
+def test_every_process_ends_with_its_pool_or_is_killed_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    ends: list[str] = []
+
+    class Told:
+        def run(self, call: object, seconds: float | None) -> tuple[int, None]:
+            return 0, None
+
+        def kill(self) -> None:
+            ends.append("killed")
+
+        def end(self) -> None:
+            ends.append("ended")
+
+    monkeypatch.setattr(processes, "_Process", Told)
+    for abandoned, expected in ((False, ["ended"] * 2), (True, ["killed"] * 2)):
+        ends.clear()
+        workers = processes.Workers(1)
+        for group in ("a", "b"):
+            workers.start(str, group=group).result()
+        if abandoned:
+            workers.abandon()
+            with pytest.raises(RuntimeError):
+                workers.start(str, group="a")
+            assert ends == expected
+            workers.shutdown(wait=False)
+        else:
+            workers.shutdown()
+        assert ends == expected
+
+
 class NotFromText(Exception):  # noqa: N818
     """An error that cannot be made again from its text."""
 

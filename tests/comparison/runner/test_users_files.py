@@ -315,6 +315,15 @@ def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch
     assert locate_store(resolve_destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")
 
 
+def test_a_command_names_the_files_that_it_wrote(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A table of the user's has the name of one of them."""
+    (tmp_path / "a.csv").write_bytes(b"mine")
+    written = publish_files(tmp_path, {"a.csv": b"one", "b.csv": b"two"}, "run")
+    assert [(file.read_bytes(), file.parent) for file in written] == [(b"one", tmp_path), (b"two", tmp_path)]
+    assert (tmp_path / "a.csv").read_bytes() == b"mine"
+    assert f"stays: see {written[0].name!r} next to it" in capsys.readouterr().err
+
+
 def test_a_file_whose_third_replacement_was_interrupted_is_still_the_study_s(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

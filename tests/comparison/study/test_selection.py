@@ -11,7 +11,7 @@ from places import scene_text
 from report_texts import both_pages, schema_errors, summary_of
 from runs import Run
 
-from comparison.cli.options import parse_options
+from comparison.cli.options import _parser, parse_options
 from comparison.registry import (
     EVERYTHING,
     FEATURES,
@@ -172,3 +172,5 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
     assert (", demands (" in usual, ", demands (" in also) == (False, True)
     assert "effective values (5)" in usual
     assert "on request; --also demands makes it" in usual
+    named = _parser().format_help().split("these analyses, too: ")[1]
+    assert named.split("--")[0].split() == ["demands"], "in the help, those on request alone"
