@@ -4,6 +4,8 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -14,6 +16,7 @@ import multibody
 import reference
 from reference.problem import Amplification
 from reference.problem.phases import phase_axis, phase_coordinates
+from reference.solver.samples import step_instants
 from reference.support import drawing
 from reference.support.html_table import html_table
 
@@ -73,6 +76,23 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
 @pytest.mark.parametrize("points", [2.5, 2.0, 0, 10_001, "2", None])
 def test_an_axis_of_phases_has_a_whole_number_of_them(points):
     assert "must be a whole number from 1 to 10000" in str(refusal(phase_axis, points))
+
+
+@pytest.mark.parametrize(("count", "most"), [(60, 200), (60, 60), (60, 31), (1, 7), (900, 999)])
+def test_instants_are_in_every_step_up_to_the_most_that_are_kept(count: int, most: int) -> None:
+    """Ten steps of unequal length, of which the last has no instant just before its end."""
+    ends = np.cumsum(np.arange(1.0, 11.0))
+    starts, lengths = np.append(0.0, ends[:-1]), np.arange(1.0, 11.0)
+    record: Any = SimpleNamespace(
+        counts=np.array([10, 0]), start=starts, length=lengths, contact=np.zeros(10, int), clock=np.zeros((10, 7))
+    )
+    every = step_instants(record, count, 10_000)
+    parts = min(max(count // 10, 4), 48)
+    expected = np.concatenate([start + length * np.arange(parts) / parts for start, length in zip(starts, lengths)])
+    np.testing.assert_allclose(every, np.sort([*expected, *starts[1:]]), rtol=1e-15)
+    kept = step_instants(record, count, most)
+    assert len(kept) <= most
+    np.testing.assert_array_equal(kept, every[:: -(-len(every) // most)])
 
 
 def test_a_motion_is_labeled_with_units(motion):

@@ -112,6 +112,13 @@ def test_all_keys_that_run_wrongly_are_in_one_line_with_all_other_errors_and_not
         "isolator.bound = {'values'",
         "isolator.bound.values = 3", "isolator.travel = -1.0", "excitation.scale.range = [3.0, 1.0]",
     ]  # fmt: skip
+    both = _file(tmp_path, "friction = 0.1", "friction = {values = []}\ntravel = {values = [-1.0, 2.0]}")
+    both.write_text('combine = "product"\n' + both.read_text(encoding="utf-8"), encoding="utf-8")
+    said_of_both = str(refusal(load_family, both)).removeprefix(f"{both}: ").split("; also ")
+    assert [line.partition(": ")[0] for line in said_of_both] == [
+        "isolator.friction.values = []",
+        "isolator.travel = -1.0",
+    ]
     assert "the keys here are combine, title" in said[1], "a scene file has no name"
     assert "did you mean bounds?" in said[5]
 

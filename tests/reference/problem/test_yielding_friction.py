@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from chains import refusal
 
 import reference
 from reference.problem import GRAVITY
@@ -34,6 +35,15 @@ def test_effective_isolator_counts_the_elastic_part_of_the_loop():
     np.testing.assert_allclose(loss, [0.0, 0.0, 4.0 * 0.1 * WEIGHT * 0.008], atol=1e-12)
     np.testing.assert_array_equal(soft.stiffness[1:], rigid.stiffness[1:])
     assert soft.stiffness[0] == pytest.approx(WEIGHT * (0.05 / 1e-3 + 1.0 / SCENE.radius))
+
+
+@pytest.mark.parametrize("key", ["yield_displacement", "initial_stiffness"])
+def test_what_has_rigid_friction_names_the_key_of_the_file(key: str) -> None:
+    value = {"yield_displacement": 2e-3, "initial_stiffness": 1500.0}[key]
+    said = refusal(yielding(**{key: value}).require_rigid_friction, "the closed form")
+    assert (said.key, said.value) == (f"isolator.friction.{key}", value)
+    assert said.rule == "the closed form has friction that is rigid before it slides: remove this key"
+    SCENE.require_rigid_friction("the closed form")
 
 
 def test_another_yield_displacement_leaves_the_rest_of_the_law():

@@ -145,6 +145,8 @@ PLAIN = [  # text, what is proposed, values at 0.01 s in g
     ("Acceleration (g)\n100 Hz\n" + ONE, '{file = "a.txt", step = 0.01, unit = "g", skip = 2}', FOUR),
     ("x\ny\n4 values at a time step of 0.01 s in units of g\n" + ONE, 'step = 0.01, unit = "g", skip = 3}', FOUR),
     ("3 0.5\n1 0.25\n4 -0.5\n", '{file = "a.txt", step = 0.01, unit = "g", column = 1}', [3.0, 1.0, 4.0]),
+    ("1; 2\n4 ;0\n7\n", '{file = "a.txt", step = 0.01, unit = "g"}, with the step', [1.0, 2.0, 4.0, 0.0, 7.0]),
+    ("34 118.5 degrees\n" + ONE, 'step = 0.01, unit = "g", skip = 1}, with the step and the unit', FOUR),
     ("1 2\n4 0\n7\n", '{file = "a.txt", step = 0.01, unit = "g"}, with the step', [1.0, 2.0, 4.0, 0.0, 7.0]),
     (ONE.replace(".", ","), '{file = "a.txt", step = 0.01, unit = "g"}', FOUR),
 ]

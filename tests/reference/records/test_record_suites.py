@@ -41,6 +41,8 @@ def test_motions_of_a_directory_beside_the_scene_are_numbered_and_labeled_by_nam
     assert scenes[0].excitation.files == "suite 1"
     family = load_family(written(folder, 'suite = "suite", motion = "all"'))
     assert (family.labels, family.values) == ({"excitation.record.motion": ("a", "b", "c")}, (1, 2, 3))
+    missing = refusal(load_family, written(folder, 'suite = "suite", motion = {values = [1, 9]}'))
+    assert "motion = 9: must be a whole number from 1 to 3" in str(missing)
     scales = 'record = {suite = "suite", motion = "all"}\nscale = {values = [1, 2]}'
     both = load_family(scene_file(folder, scales, 'combine = "product"\n'))
     assert both.labels == {"excitation.record.motion": tuple("aabbcc"), "excitation.scale": ("1", "2") * 3}

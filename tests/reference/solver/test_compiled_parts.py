@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba import types
 from numba.core.errors import TypingError
 from numba.core.runtime import _nrt_python, rtsys
 
 import reference
+from reference.solver.compiled.by_reference import ByReference
 from reference.support.build_cache import cache_on_disk
 
 
@@ -30,6 +32,18 @@ def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monke
     with pytest.raises(TypingError):
         unsound(1.0)
     assert gc.isenabled()
+
+
+def test_compiled_functions_are_named_by_the_fields_that_a_structure_lacks() -> None:
+    """Functions of one name are one function, whose code is that of the first that is compiled."""
+
+    class Kind(ByReference):
+        """A structure of which some lack a field."""
+
+    number = types.float64
+    kinds = [[("a", first), ("b", second)] for first in (number, types.none) for second in (number, types.none)]
+    assert len({Kind(fields).mangling_args for fields in kinds}) == 4
+    assert Kind(kinds[1]).mangling_args == Kind([("a", types.int64), ("b", types.none)]).mangling_args
 
 
 def test_a_call_returns_the_memory_that_it_took() -> None:
