@@ -164,12 +164,13 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
 
 
 def test_a_run_keeps_the_largest_values_and_the_smallest_load_of_all_its_parts() -> None:
-    """Two parts; in the second one all is a percent smaller, but for the load, which is a percent larger."""
+    """Two parts; in the second all is a percent smaller, but for the load and the displacement, within the part."""
     run, still = EngineRun(PeakReader(1, math.inf), math.inf), np.zeros((5, 3))
     model: Any = SimpleNamespace(bodies=np.array([[0, 1, 2]]), warping_displacement=None, allows_liftoff=False)
     level, time = SimpleNamespace(penetration=0.01), np.arange(5.0)
     for begin, size in ((0.0, 1.0), (4.0, 0.99)):
-        place, vertical = still + size * np.array([0.3, 0.4, 0.0]), still - size * np.array([0.0, 0.0, 0.2])
+        along = np.array([0.1, 0.7, 1.0, 0.8, 0.2])[:, None] / (size if begin else 2.0)
+        place, vertical = size * along * np.array([0.3, 0.4, 0.0]), still - size * np.array([0.0, 0.0, 0.2])
         parts = {"coordinates": place, "velocities": still, "accelerations": vertical, "slip": np.ones((5, 1))}
         motion: Any = SimpleNamespace(time=begin + time, gap=np.full((5, 1), -0.02 / size), **parts)
         record_steps(run, motion, np.full((5, 1), 3.0 * size), model, level)  # type: ignore[arg-type]

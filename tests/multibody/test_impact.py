@@ -104,6 +104,10 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
     after = law.carry_spheres_along(np.zeros(10), before, RIGHT)
     of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
     np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
+    aside = np.array([0.1, -0.06, 0.05, 0.02, -0.03, 0.1, 0.05, 0.04, 0.06, 0.05])  # on a slope
+    rates = law.gap_rates(aside) @ law.carry_spheres_along(aside, before, RIGHT)
+    np.testing.assert_allclose(rates[RIGHT], 0.0, atol=1e-12)
+    np.testing.assert_allclose(rates[LEFT], (law.gap_rates(aside) @ before)[LEFT], atol=1e-12)
     for of_spheres, met in ((0.05, 0.0), (-0.3, -0.3)):  # spheres that spring up do not push a block that falls on them
         fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0, *[of_spheres] * 4])
         rebound, _ = replace(law, restitution=0.4).solve_impact(np.zeros(10), fall, NONE, ALL)

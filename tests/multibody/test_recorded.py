@@ -26,6 +26,15 @@ ANY = (0.0, 0.0)  # a record has no phases
 EXAMPLE = reference.load_scene("synthetic-pair")  # of 20 s
 
 
+def test_a_first_step_that_ends_at_a_sample_begins_with_the_acceleration_of_its_interval() -> None:
+    """A body at rest on its support, whose friction grows from no speed: nothing accelerates it yet."""
+    samples = [[0.0, 2.0, 1.0, 0.0], [0.05, 2.0, 1.0, 0.0], [0.1, 30.0, -9.0, 0.0], [0.2, 0.0, 0.0, 0.0]]
+    kinked = {"excitation": {"record": "kinked.csv", "samples": samples}, "duration": 0.2}
+    motion = multibody.single_run(reference.load_scene("fig4-viscous").with_values(kinked), ANY, step=0.05)
+    np.testing.assert_allclose(motion.absolute_acceleration[0, :, :2], 0.0, atol=1e-6)
+    assert np.abs(motion.absolute_acceleration[2:, :, :2]).max() > 1.0
+
+
 def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     """Twice the step of level 0, within its stated error; agreement behind impacts counts from level 0 on."""
     loose, usual = multibody.levels(EXAMPLE, tolerance=1e-2), multibody.levels(EXAMPLE, tolerance=9e-3)

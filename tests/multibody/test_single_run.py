@@ -60,6 +60,12 @@ def test_a_run_at_a_constant_step_has_the_tolerances_asked_for(
     assert tolerances == pytest.approx((2e-4, limits.get("residual", 2e-7), limits.get("discontinuous", 2e-4)))
 
 
+def test_a_constant_step_divides_a_duration_that_is_no_whole_number_of_it_but_for_rounding() -> None:
+    """0.3 / 0.1 is less than 3 in binary numbers."""
+    motion = multibody.single_run(SCENE.with_values({"duration": 0.3}), PHASE, step=0.1)
+    assert motion.time[[1, -1]] == pytest.approx([0.1, 0.3])
+
+
 def test_a_run_that_cannot_end_takes_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
     run = multibody.single_run(SCENE, PHASE, level=replace(multibody.levels(SCENE)[0], step=1e-9))

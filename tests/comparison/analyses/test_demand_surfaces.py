@@ -76,11 +76,16 @@ def test_a_distribution_has_a_curve_of_every_model_with_its_color_and_dash() -> 
 def test_a_row_of_a_demand_names_its_scene_quantity_body_and_model() -> None:
     scenes = [
         SimpleNamespace(name=name, demand_statistics=[SimpleNamespace(quantity=quantity, body=body, model=model)])
-        for name, quantity, body, model in (("tower", "drift", 3, "small"), ("hall", "friction_energy", 0, "exact"))
+        for name, quantity, body, model in (
+            ("tower", "drift", 3, "small"),
+            ("tower", "acceleration", 1, "small"),
+            ("hall", "friction_energy", 0, "exact"),
+        )
     ]
     results: Any = SimpleNamespace(scenes=scenes, titles={"small": "SMALL", "exact": "EXACT"})
     assert [(row["scene"], row["name"], row["title"]) for row in demand_lines(results)] == [
         ("tower", "drift against the body below of body 3, m", "SMALL"),
+        ("tower", "largest absolute acceleration (literal supremum where friction sticks) of body 1, m/s^2", "SMALL"),
         ("hall", "energy dissipated by friction, J", "EXACT"),
     ]
 

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections import Counter
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -16,7 +17,7 @@ from markupsafe import escape
 from places import write_pulses
 
 from comparison.analyses.ensemble import limits
-from comparison.analyses.ensemble.command import main
+from comparison.analyses.ensemble.command import format_demand_checks, main
 from comparison.analyses.ensemble.limits import (
     check_limits,
     compare_with_stored,
@@ -327,6 +328,16 @@ def test_the_last_line_is_the_limit_that_is_broken_by_the_largest_share() -> Non
     *_, last = word_checks(check_limits(lifted, {"job[upper bound]": DemandLimits(displacement=0.01, uplift=0.0)}))
     assert " uplift " in last, "no share of zero is small"
     assert word_checks([]) == []
+
+
+def test_a_limit_that_cannot_be_compared_fails_for_a_server() -> None:
+    """Its line in junit.xml is that of the terminal."""
+    limits = {"job[upper bound]": DemandLimits(displacement=9.0, base_shear=0.1, uplift=0.0)}
+    checks = check_limits(ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)}), limits)
+    suites = ElementTree.fromstring(format_demand_checks(checks, {"compute_seconds": 3.0, "began": "then"}))
+    failures = [[each.get("message") for each in case] for case in suites.iter("testcase")]
+    assert failures == [[] if each.verdict == "met" else [word_check(each)] for each in checks]
+    assert Counter(each.verdict for each in checks) == {"met": 1, "not met": 1, "not compared": 1}
 
 
 def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_errors() -> None:

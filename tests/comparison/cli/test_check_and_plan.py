@@ -17,6 +17,7 @@ from studies import body_comparisons, difference_rows, solved
 
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces
+from comparison.cli import terminal
 from comparison.cli.options import parse_options
 from comparison.run import _tighter_command
 from comparison.runner.processes import count_cores
@@ -132,6 +133,17 @@ def test_bounds_of_the_command_line_make_two_scenes_of_each() -> None:
     names = [f"{name}[{bound} bound]" for name in ("fig3-I", "fig4-dry") for bound in ("lower", "upper")]
     assert [scene.name for scene in scenes] == names
     assert [scene.friction_coefficient for scene in scenes] == [0.08, 0.15] * 2
+
+
+def test_a_reason_to_refuse_is_told_once_with_every_scene_and_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    study = Study((reference.load_scene("fig3-I"), reference.load_scene("fig4-dry")), 4, 1e-3, fake_hierarchy())
+    refused = {("fig3-I", "spatial"): "too long", ("fig4-dry", "spatial"): "too long", ("fig4-dry", "exact"): "other"}
+    monkeypatch.setattr(terminal, "find_refusal", lambda scene, model, *rest: refused.get((scene.name, model.key)))
+    titles = {model.key: model.title for model in study.hierarchy}
+    assert terminal._list_refusals(study) == {
+        "too long": [f"{name}, {titles['spatial']}" for name in ("fig3-I", "fig4-dry")],
+        "other": [f"fig4-dry, {titles['exact']}"],
+    }
 
 
 def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:

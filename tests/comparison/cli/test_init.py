@@ -59,7 +59,8 @@ def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.M
 
 
 COMMIT = "0123456789abcdef0123456789abcdef01234567"
-REPOSITORY = {"url": "https://me:word@host.org/a.git", "vcs_info": {"vcs": "git", "commit_id": COMMIT}}
+VCS = {"vcs": "git", "commit_id": COMMIT, "requested_revision": "main"}
+REPOSITORY = {"url": "https://me:word@host.org/a.git", "vcs_info": VCS}
 FOLDER = {"url": "file:///no/such/folder", "dir_info": {}}
 
 

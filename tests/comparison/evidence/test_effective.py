@@ -54,6 +54,14 @@ def test_one_instant_tells_nothing_of_the_friction() -> None:
     assert in_oil.friction == pytest.approx(TRUE["friction"], rel=1e-9), "over the speed"
 
 
+def test_no_coefficient_is_read_where_heat_changes_it() -> None:
+    heating = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}
+    heated = load_scene("fig3-I").with_values({"isolator.friction": {"slow": 0.1, "heating": heating}})
+    values = read_values_back((heated, _model(**TRUE)))
+    assert np.isnan(values.friction)
+    assert values.radius == pytest.approx(TRUE["radius"])
+
+
 LAWS = [
     {"slow": 0.05, "fast": 0.1, "rate": 20.0},
     {"slow": 0.1, "fast": 0.05, "rate": 20.0},

@@ -15,8 +15,8 @@ from scipy.io import savemat
 
 from comparison.evidence.benchmarks.cases import load_mastodon_case
 from comparison.evidence.validation import files
-from comparison.evidence.validation.command import main
-from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE
+from comparison.evidence.validation.command import _compare_file, main
+from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE, make_file_error
 from comparison.evidence.validation.table import ExperimentFindings
 from reference.problem import SceneError
 
@@ -108,6 +108,21 @@ def test_a_file_of_another_motion_ends_in_one_line(
         assert rule in lines[0]
     else:
         assert code in (0, 1) or (code, len(lines)) == (2, 1), lines
+
+
+def test_a_rule_that_a_measured_file_breaks_is_told_as_it_is() -> None:
+    """Whatever else goes wrong with its numbers says in general what the file must hold."""
+
+    def compare(error: Exception) -> ExperimentFindings:
+        raise error
+
+    exact = make_file_error("Exp1.mat", "Theta1 must have 14 turning points, not 3")
+    general = "must hold motions like the published ones: none can be compared with these (IndexError: 7 of 3)"
+    for error, rule in ((exact, exact.rule), (IndexError("7 of 3"), general)):
+        with pytest.raises(SceneError) as told:
+            _compare_file("Exp1.mat", compare, error)
+        assert told.value.rule == rule
+        assert "Exp1.mat" in str(told.value)
 
 
 def test_runs_are_read_from_the_lightest_to_the_heaviest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

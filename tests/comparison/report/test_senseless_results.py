@@ -4,11 +4,12 @@ import json
 import random
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
 from fake_models import fake_hierarchy
 from known_results import FILES, known_ensemble, known_trade
+from pydantic import TypeAdapter, ValidationError, computed_field
 from runs import SMALL, Run
 
 from comparison.analyses.ensemble.result import STORED as ENSEMBLE
@@ -17,6 +18,7 @@ from comparison.evidence.extremes.matrix import STORED as MATRIX
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import SCHEMA, STORED, TradeFile
 from comparison.evidence.validation.table import STORED as VALIDATION
+from comparison.result_types import result
 from comparison.runner.output import publish_files
 
 STORES = {each.name: each for each in (BENCHMARKS, ENSEMBLE, MATRIX, STORED, growth.STORED, VALIDATION)}
@@ -88,6 +90,30 @@ def test_fields_that_contradict_each_other_are_refused(
         STORES[name].load(tmp_path)
     assert str(refused.value).count("\n") == 0
     assert name in str(refused.value)
+
+
+def test_a_result_without_computed_fields_has_no_other_keys() -> None:
+    """With one, what a stored file says of it is left unread."""
+
+    @result
+    class Plain:
+        number: Annotated[float, "a number"]
+
+    @result
+    class Doubled:
+        number: Annotated[float, "a number"]
+
+        @computed_field
+        @property
+        def double(self) -> float:
+            """Twice the number."""
+            return 2.0 * self.number
+
+    with pytest.raises(ValidationError, match="misspelled"):
+        TypeAdapter(Plain).validate_python({"number": 1.0, "misspelled": 2.0})
+    stored = TypeAdapter(Doubled).dump_python(Doubled(1.5))
+    assert stored == {"number": 1.5, "double": 3.0}
+    assert TypeAdapter(Doubled).validate_python(stored) == Doubled(1.5)
 
 
 def test_a_target_spectrum_with_a_value_at_every_period_is_read(tmp_path: Path) -> None:

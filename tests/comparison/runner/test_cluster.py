@@ -166,6 +166,20 @@ def test_a_cluster_without_workers_is_waited_for_a_minute(monkeypatch: pytest.Mo
         executor.width  # noqa: B018
 
 
+def test_a_worker_of_a_cluster_keeps_the_time_limit_of_a_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def start(call: Any, seconds: float | None) -> Future[Any]:
+        asked.append(seconds)
+        answer: Future[Any] = Future()
+        answer.set_result(call())
+        return answer
+
+    monkeypatch.setattr(dask, "_get_child_workers", lambda: SimpleNamespace(start=start))
+    assert [dask._call_one_at_a_time(list, seconds) for seconds in (2.5, None)] == [[], []]
+    assert asked == [2.5], "a call without a limit needs no process of its own"
+
+
 def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
     remote: Future[Any] = Future()
     remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))

@@ -300,6 +300,38 @@ def test_every_process_ends_with_its_pool_or_is_killed_at_once(monkeypatch: pyte
         assert ends == expected
 
 
+def test_a_process_that_exceeded_its_time_is_ended_and_not_used_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    made, ended = itertools.count(), []
+
+    class Numbered:
+        def __init__(self) -> None:
+            self.number = next(made)
+
+        def run(self, call: object, seconds: float | None) -> tuple[int, None]:
+            if seconds is not None and self.number < 2:
+                raise [TimeLimitError, WorkerDiedError][self.number]("lost")
+            return self.number, None
+
+        def end(self) -> None:
+            ended.append(self.number)
+
+    monkeypatch.setattr(processes, "_Process", Numbered)
+    with make_process_pool(1) as pool:
+        for error in (TimeLimitError, WorkerDiedError):
+            with pytest.raises(error):
+                pool.start(str, 1.0).result()
+        assert (pool.start(str, 1.0).result(), ended) == (2, [0, 1])
+
+
+def test_a_worker_ends_in_the_middle_of_a_call_when_its_parent_has_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[object] = []
+    parent = SimpleNamespace(join=partial(order.append, "parent"))
+    monkeypatch.setattr(processes.multiprocessing, "parent_process", lambda: parent)
+    monkeypatch.setattr(processes.os, "_exit", order.append)
+    processes._end_with_parent()
+    assert order == ["parent", 1]
+
+
 class NotFromText(Exception):  # noqa: N818
     """An error that cannot be made again from its text."""
 
