@@ -146,7 +146,9 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     ends: list[float] = []
 
     def noted(integration: Integration, *rest: Any, **options: Any) -> Checkpoint:
+        begin = rest[1].time
         reached = continue_run(integration, *rest, **options)
+        assert rest[1].time == begin, "from which the accurate run goes on behind a look ahead"
         ends.append(reached.time)
         return reached
 

@@ -13,10 +13,20 @@ from multibody.integration.peak import (
     _find_step_jumps,
     _list_smooth_stretches,
     _read_corner,
+    find_kinks,
 )
 from multibody.integration.step_control import KINK_STEP_RATIO, StepControl
 
 TIME = np.arange(0.0, 1.0, 0.02)
+
+
+def test_a_row_is_on_a_kink_on_either_side_of_it() -> None:
+    knots, near = np.array([0.3, 0.5, 0.9]), 1e-9
+    time = np.array([0.3 - 2e-9, 0.3, 0.5 - 5e-10, 0.5 + 5e-10, 0.5 + 2e-9, 0.7, 0.9 + 9e-10, 1.0])
+    assert find_kinks(time, knots, near).tolist() == [1, 2, 3, 6]
+    assert find_kinks(time, np.array([]), near).size == 0
+
+
 CHUNKS = pytest.mark.parametrize("chunks", [1, 2, 7, 16])
 CORNERS = pytest.mark.parametrize("corner", [0.503, 0.511, 0.519])
 

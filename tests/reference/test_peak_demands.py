@@ -1,5 +1,7 @@
 """Demands of every phase pair: those of the single motions, the same from both sides, gaps that cost no other pair."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chains import chain, made_up
@@ -10,7 +12,7 @@ import multibody
 import reference
 from reference.measures import Estimate, demands
 from reference.measures.peak_demands import demands_of_motions
-from reference.problem import phase_grid
+from reference.problem import Outcome, phase_grid
 
 V_REG = 1e-3
 SHARED = ("displacement", "base_shear", "acceleration", "drift", "contact_force_min", "contact_force_max")
@@ -103,3 +105,13 @@ def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:
     )
     assert (alone.status.tolist(), alone["stops"].value[1]) == (["non-finite load", "ok"], 0.0)
     assert (multibody.trajectory(scene, (0.0, 0.0)).status, len(alone["stops"].value)) == ("non-finite load", 2)
+
+
+def test_every_outcome_keeps_its_whole_name() -> None:
+    """The names have from two to two dozen letters."""
+    scene, ended = chain(duration=0.2), iter(Outcome)
+    phases = np.linspace(0.0, 1.0, 2 * len(Outcome)).reshape(-1, 2)
+    surface = demands_of_motions(
+        scene, phases, lambda phase: replace(made_up(scene, np.arange(3.0)), status=next(ended).value)
+    )
+    assert surface.status.tolist() == [outcome.value for outcome in Outcome]

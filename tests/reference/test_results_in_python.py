@@ -90,6 +90,7 @@ def test_instants_are_in_every_step_up_to_the_most_that_are_kept(count: int, mos
     parts = min(max(count // 10, 4), 48)
     expected = np.concatenate([start + length * np.arange(parts) / parts for start, length in zip(starts, lengths)])
     np.testing.assert_allclose(every, np.sort([*expected, *starts[1:]]), rtol=1e-15)
+    assert {*np.nextafter(starts[1:], -np.inf)} < {*every}
     kept = step_instants(record, count, most)
     assert len(kept) <= most
     np.testing.assert_array_equal(kept, every[:: -(-len(every) // most)])

@@ -208,6 +208,19 @@ def test_a_change_without_an_answer_is_unknown_and_costs_nothing_else() -> None:
     assert found.value == pytest.approx(1.0)
 
 
+def test_a_derivative_is_that_of_the_steps_at_which_the_quantity_has_values() -> None:
+    """It is unknown from 2 % above the value on, which only the widest of the steps reaches."""
+    asked: list[float] = []
+
+    def ends(scene: Scene) -> Estimate:
+        asked.append(scene.isolator.friction / AT)  # type: ignore[operator]
+        return Estimate(np.nan if asked[-1] > 1.02 else AT * asked[-1], 1e-9)
+
+    found = sensitivity(ONE_BODY, [FRICTION], ends)[FRICTION]
+    assert sum(1.02 < share < 1.049 for share in asked) == 1
+    assert (found.value, np.isfinite(found.error)) == (pytest.approx(1.0), True)
+
+
 class Uncertain:
     """An object of another package."""
 

@@ -10,6 +10,7 @@ import pytest
 from chains import chain, made_up
 
 import reference
+from reference import motion
 from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
@@ -108,6 +109,21 @@ def test_the_error_of_a_peak_counts_the_other_run() -> None:
         reading = left - share * np.abs(motion.peak - other.peak)
         assert (reading >= -1e-6 * left).all()
         assert reading[1] > 1e-5 or phase != (2.0, 0.7), "both runs read this peak inside a long step"
+
+
+def test_two_runs_that_agree_by_chance_leave_the_error_of_their_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: list[Any] = []
+
+    def same(*given: Any) -> Any:
+        runs.append(runs[0] if runs else record_run(*given)._replace(reading_error=np.zeros(2)))
+        return runs[-1]
+
+    record_run = motion._record_run
+    monkeypatch.setattr(motion, "_record_run", same)
+    found = reference.trajectory(load_scene("fig3-II"), (0.3, 1.1), tolerance=1e-4)
+    assert len(runs) == 2
+    np.testing.assert_allclose(found.accuracy.peak_error, found.accuracy.floor * found.peak, rtol=1e-12)
+    assert (found.accuracy.peak_error > 1e-7 * found.peak).all()
 
 
 def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:

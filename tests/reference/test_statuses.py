@@ -98,6 +98,21 @@ def test_loads_beyond_double_precision_or_without_a_motion_are_told_at_once(equa
     assert refused(still, Outcome.NO_GROUND_MOTION, equations=equations) == 0.0
 
 
+@pytest.mark.parametrize(("threads", "alone", "slices"), [(3, False, 18), (3, True, 1), (1, False, 1)])
+def test_the_time_of_a_surface_is_that_of_all_its_slices(threads, alone, slices, monkeypatch):
+    """Each states as many seconds as it has phase pairs; on threads a first pair is computed to compile."""
+    monkeypatch.setattr(surface.numba, "get_num_threads", lambda: threads)
+    solved = []
+
+    def solve(part):
+        solved.append(part)
+        return part.stop - part.start
+
+    assert surface._solve_on_threads(solve, 51, alone) == 51
+    assert len(solved) == slices
+    assert sorted(np.concatenate([np.arange(51)[part] for part in solved[slices > 1 :]])) == [*range(51)]
+
+
 def test_a_failed_point_leaves_its_neighbors_alone():
     scene = chain(0.25, 0.05, [2.0], amplitudes=[[2.0, 0.5], [0.3, 1.5]])
     phases = phase_grid(4) + 0.1

@@ -206,6 +206,8 @@ def test_a_family_of_many_bodies_is_refused_before_its_scenes_are_made():
     bodies = [{"mass": 1.0}] + 100 * [{"mass": 1.0, "period": [1.0, 1.0]}]
     said = refusal(make_family, {"bodies": bodies, "duration": {"range": [1.0, 2.0], "steps": 500}}, "mine.toml")
     assert (said.key, said.value) == ("bodies: 101 in each of 500 scenes", 50_500)
+    most = {"bodies": bodies[:100], "duration": {"range": [1.0, 2.0], "steps": 500}}
+    assert "50000 bodies" not in str(refusal(make_family, most, "mine.toml"))
     many = {"combine": "zip", "bodies": [{"mass": {"values": [1.0, 2.0 + n]}} for n in range(23)]}
     said = refusal(make_family, many, "mine.toml")
     assert (said.key, said.value, said.rule) == ("bodies.20.mass", {"values": [1.0, 22.0]}, "at most 20 keys may run")
