@@ -184,6 +184,7 @@ def test_no_two_spread_places_are_mirror_images() -> None:
     study, surfaces = _studied(10)
     places = [place for place in choose_places(study, surfaces, study.scenes[0]) if not place.why]
     assert len({(place.row % 5, place.column % 5) for place in places}) == len(places) >= 4
+    assert sum(place.row == place.column for place in places) == 1, "spread over the square, not along its diagonal"
 
 
 def slides(scene: Scene, phase: object, tolerance: float, **settings: object) -> Trajectory:

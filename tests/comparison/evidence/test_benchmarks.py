@@ -3,6 +3,7 @@
 import math
 import os
 import re
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -204,6 +205,10 @@ def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
         (tmp_path / STORED.name).write_bytes(known.replace(right, wrong))
         with pytest.raises(ValueError, match=r"not a table of benchmarks: .*run phase-resonance benchmarks"):
             STORED.load(tmp_path)
+    for verdict, said in ((MET, "contradicts None"), (NOT_COMPARED, "")):
+        numbers = {EQUATIONS: SideNumber(value=None, error=None, verdict=verdict)}
+        with pytest.raises(ValueError, match=said) if said else nullcontext():
+            PublishedNumber(quantity="q", unit="", published=1.0, uncertainty=0.0, numbers=numbers)
 
 
 def test_another_motion_is_not_that_of_mastodon(tmp_path, capsys, monkeypatch):

@@ -14,7 +14,7 @@ from terminal_tables import rows_under
 
 from comparison.cli import computing
 from comparison.evidence.claims import table as table_module  # table: what a test made
-from comparison.evidence.claims.checks import StatementVerdict, count_peaks
+from comparison.evidence.claims.checks import StatementVerdict, _describe_curvatures, count_peaks
 from comparison.evidence.claims.claims import CLAIMS, PaperStatement
 from comparison.evidence.claims.command import main
 from comparison.evidence.claims.evidence import MOTION_PHASES, CaseInReading, Evidence, gather_evidence
@@ -418,3 +418,8 @@ def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:
     assert Claims().collect(study, None, TaskResults()) is None
     for analysis in (Scaling(), Convergence()):
         assert {task.about.name for task in analysis.tasks(study)} == {"fig3-I"}
+
+
+def test_a_flat_surface_is_no_fold_however_its_errors_are_curved() -> None:
+    evidence = _seen(np.full((N, N), 1.3), SEVERAL_PEAKS)
+    assert _describe_curvatures(replace(evidence, case="dry")) == "dry: mu_1 flat, mu_2 fold (h^1.0)"

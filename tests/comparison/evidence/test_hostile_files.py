@@ -6,6 +6,7 @@ import zlib
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,8 @@ from runs import Here
 from scipy.io import savemat
 
 from comparison.evidence.benchmarks.cases import load_mastodon_case
-from comparison.evidence.validation import files
-from comparison.evidence.validation.command import _compare_file, main
+from comparison.evidence.validation import files, frame, pendulum
+from comparison.evidence.validation.command import _compare_file, compare_folder, main
 from comparison.evidence.validation.files import DECAY_FILE, LARGE_SWING_FILE, make_file_error
 from comparison.evidence.validation.table import ExperimentFindings
 from reference.problem import SceneError
@@ -123,6 +124,48 @@ def test_a_rule_that_a_measured_file_breaks_is_told_as_it_is() -> None:
             _compare_file("Exp1.mat", compare, error)
         assert told.value.rule == rule
         assert "Exp1.mat" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "file"),
+    [
+        (frame, "compare_frame", "s_b_<weight>g_x.mat"),
+        (pendulum, "compare_decay", DECAY_FILE),
+        (pendulum, "compare_large_swings", LARGE_SWING_FILE),
+    ],
+)
+def test_numbers_that_cannot_be_compared_name_their_file(
+    monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, file: str
+) -> None:
+    def fails(measured: object) -> ExperimentFindings:
+        raise IndexError("7 of 3")
+
+    for each, other in ((frame, "compare_frame"), (pendulum, "compare_decay"), (pendulum, "compare_large_swings")):
+        monkeypatch.setattr(each, other, lambda measured: ExperimentFindings([], [], [], [], []))
+    monkeypatch.setattr(owner, name, fails)
+    measured = SimpleNamespace(runs=["run"], decay="decay", large="large")
+    monkeypatch.setattr("comparison.evidence.validation.command.read_folder", lambda folder: measured)
+    with pytest.raises(SceneError) as told:
+        compare_folder(Path("folder"))
+    assert told.value.value == file
+
+
+@pytest.mark.parametrize("soft", [2**40, 12, -1])
+def test_the_memory_limit_of_a_user_holds_while_a_file_is_read_and_behind(
+    monkeypatch: pytest.MonkeyPatch, soft: int
+) -> None:
+    limits = [(soft, 2**41)]
+    system = SimpleNamespace(
+        RLIMIT_AS="memory",
+        getpagesize=lambda: 4096,
+        getrlimit=lambda kind: limits[-1],
+        setrlimit=lambda kind, pair: limits.append(pair),
+    )
+    monkeypatch.setattr(files, "resource", system)
+    with files.limit_memory():
+        assert limits[-1][1] == 2**41
+        assert 0 < limits[-1][0] - files.MAX_READING_BYTES < 2**38 or limits[-1][0] == 12 == soft
+    assert limits[-1] == (soft, 2**41)
 
 
 def test_runs_are_read_from_the_lightest_to_the_heaviest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -169,6 +170,10 @@ def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
     )
     assert np.abs(tight[0] / expected - 1.0).max() < 1e-5
     assert 0.5 > loose[1] > tight[1] > 1e-4, "mean steps, s"
+    pairs = [(0.3, 1.1), (3.0, 2.0)]
+    steps = [single_runs.run_reference_once(short, each, 1e-6)[1] for each in (pairs[:1], pairs[1:], pairs)]
+    assert steps[0] != pytest.approx(steps[1], rel=0.02)
+    assert 2.0 / steps[2] == pytest.approx(1.0 / steps[0] + 1.0 / steps[1], rel=1e-12), "of as many steps on average"
     runs = (single_runs.run_engine_once(short, phases, "translational", 1e-3, step) for step in (1.0, 16.0))
     usual, coarse = (np.abs(run / expected - 1.0).max() for run in runs)
     assert usual < 1e-3 < coarse
@@ -401,13 +406,17 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
 
 def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
+    timed: list[int] = []
     monkeypatch.setattr(growth, "measure_setting", calls.append)
+    clock = SimpleNamespace(monotonic=lambda: timed.append(len(calls)) or float(len(timed)))
+    monkeypatch.setattr(growth, "time", clock)
     monkeypatch.setattr(growth, "count_cores", lambda: 3)
     series = growth.measure_by_workers(SCENE, ThreadPoolExecutor)
     assert list(series.values) == [1.0, 2.0, 3.0]
     assert len(calls) == 3 * growth.WORKER_CALLS + 2 * (1 + 2 + 3), (
         "the same work for all, and two calls to warm each up"
     )
+    assert np.diff(timed)[::2].tolist() == [growth.WORKER_CALLS] * 3, "the clock starts when all are warm"
 
 
 def test_two_files_of_one_name_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

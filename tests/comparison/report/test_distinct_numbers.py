@@ -4,6 +4,7 @@ import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ from studies import solved
 
 from comparison.analyses.worst_phases.analysis import LargestOverPhases
 from comparison.registry import make_report
+from comparison.report import page_data
 from comparison.report.page_data import collect_page_data, find_crossings
 from comparison.run import main
 from comparison.study.models import label_of
@@ -281,6 +283,12 @@ def test_the_page_draws_every_value_of_its_scene_model_and_body() -> None:
     ]  # fmt: skip
     assert (pair["second"], pair["uncertainty"], pair["contours"]) == (other, None, lines)
     assert [len(each) > 0 for each in lines] == [True, False], "the bodies are told apart"
+    last, own = alone.hierarchy[-1], alone.scenes[0].name
+    nothing: dict[str, Any] = {"certificate": "", "reason": "", "accepted": False, "difference_accepted": False}
+    unlike = [SimpleNamespace(scene=name, model=last.key, body=2, through=name, **nothing) for name in (own, "another")]
+    told = replace(make_report(alone, surfaces, {}, [], RUN, families=()), completions=unlike)
+    drawn = page_data._model_data(told, alone.scenes[0], last)
+    assert [each and each["through"] for each in drawn["completed"]] == [None, own]
     coarse = replace(alone, hierarchy=[replace(m, most=COARSE) if m.key == CHAIN[0] else m for m in alone.hierarchy])
     [scene] = json.loads(collect_page_data(make_report(coarse, solved(coarse), {}, [], RUN, families=())))["scenes"]
     assert np.shape(scene["pairs"][0]["uncertainty"]) == (2, COARSE, COARSE), "the first is drawn as points"

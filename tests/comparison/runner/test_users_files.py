@@ -20,7 +20,14 @@ from comparison.evidence.extremes import command as extremes
 from comparison.report import page
 from comparison.runner import output
 from comparison.runner.cache import Cache, CacheKey, locate_store
-from comparison.runner.manifest import MANIFEST, OwnedFile, format_manifest, list_foreign_files, read_manifest
+from comparison.runner.manifest import (
+    MANIFEST,
+    OwnedFile,
+    format_manifest,
+    is_own_file,
+    list_foreign_files,
+    read_manifest,
+)
 from comparison.runner.output import (
     publish_files,
     refuse_foreign_files,
@@ -322,6 +329,12 @@ def test_a_command_names_the_files_that_it_wrote(tmp_path: Path, capsys: pytest.
     assert [(file.read_bytes(), file.parent) for file in written] == [(b"one", tmp_path), (b"two", tmp_path)]
     assert (tmp_path / "a.csv").read_bytes() == b"mine"
     assert f"stays: see {written[0].name!r} next to it" in capsys.readouterr().err
+    own = read_manifest(tmp_path)
+    assert [is_own_file(tmp_path / name, own.get(name)) for name in (*(file.name for file in written), "a.csv")] == [
+        True,
+        True,
+        False,
+    ]
 
 
 def test_a_file_whose_third_replacement_was_interrupted_is_still_the_study_s(

@@ -105,6 +105,9 @@ def test_words_are_those_of_the_law() -> None:
     assert [label_of(model, SOFT) for model in models_of(SOFT, HIERARCHY)[:3]] == [
         "small equations, rigid friction, as integrated", "small equations", "exact equations",
     ]  # fmt: skip
+    oiled = load_scene("fig4-viscous")
+    for scene, reading in ((PLAIN, ", as integrated"), (oiled, "")):
+        assert label_of(SMALL_RIGID_FRICTION, scene) == "small equations, rigid friction" + reading
     mixed = {model.key: model for model in with_steps_of_scenes(MODEL_HIERARCHY, [PLAIN, SOFT])}
     assert mixed[EXACT.key].title == EXACT.title
     assert mixed[EXACT.key].assumptions["friction"].startswith(f"{EXACT.assumptions['friction']}; where the scene says")

@@ -7,12 +7,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from fake_models import errors_in
+from fake_models import errors_in, fake_hierarchy
 from report_texts import summary_of
-from runs import Run
+from runs import RUN, Run
 from studies import solved
 
 import reference
+from comparison.registry import make_report
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
@@ -35,6 +36,16 @@ def test_a_sound_run_has_no_alert_and_its_limits_hold(command: Callable[..., Run
     for error, found in ((0.4, []), (0.6, [("red", "refused"), ("red", "limit")])):  # more than half of a value is none
         worthless = command(*words, hierarchy=errors_in({}, {"spatial": error})).report
         assert [(each["level"], each["kind"]) for each in summary_of(worthless)["alerts"]] == found
+
+
+def test_a_broken_limit_of_any_scene_is_an_alert() -> None:
+    study = Study((load_scene("fig3-I"), load_scene("fig3-II")), 4, 1e-3, fake_hierarchy())
+    results = make_report(study, solved(study), {}, [], RUN, families=()).results
+    broken = [(scene.name, limit.key) for scene in results.scenes for limit in scene.limits if limit.breaches]
+    assert {(each.scene, each.text.split(":")[1]) for each in results.alerts if each.kind == "limit"} == {
+        (scene, f" acceptance.{key}") for scene, key in broken
+    }
+    assert len({scene for scene, _ in broken}) == 2
 
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])

@@ -2,12 +2,15 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 from studies import GRID, KEYS, planted_study, solved
 
+from comparison.report import page
 from comparison.report.page_data import find_crossings
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -138,6 +141,21 @@ def test_the_scale_holds_every_bar_with_both_ends_of_its_error() -> None:
             assert (scale.low, scale.high) == pytest.approx((low - room, high + room))
             assert scale.ticks == pytest.approx(ticks)
     assert make_common_scale([([], replace(TOTAL, size=-0.05, error=0.2))]).high == pytest.approx(0.15 + 0.03 * 0.4)
+
+
+def test_the_charts_of_means_and_of_largest_differences_have_scales_of_their_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    seen: dict[str, Any] = {}
+    monkeypatch.setattr(page, "render_template", lambda name, context: seen.update(context))
+    monkeypatch.setattr(page, "name_second_model", lambda study: "another")
+    larger = [replace(bar, size=5.0 * bar.size) for bar in STEPS], replace(TOTAL, size=5.0 * TOTAL.size)
+    largest = SimpleNamespace(bars=larger[0], total=larger[1])
+    waterfall = SimpleNamespace(bars=STEPS, total=TOTAL, largest=largest)
+    scene = SimpleNamespace(waterfalls=[waterfall], headlines=["line"])
+    report: Any = SimpleNamespace(study=SimpleNamespace(hierarchy=()), results=SimpleNamespace(scenes=[scene]))
+    page.render_summary(report)
+    assert seen["scales"] == {"mean": make_common_scale([(STEPS, TOTAL)]), "largest": make_common_scale([larger])}
 
 
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
