@@ -8,7 +8,15 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import SceneError, load_family, load_scene
-from reference.support.files import MARK_FILE, TEMPORARY_PREFIX, find_abandoned_staging, read_file, write_new
+from reference.support.files import (
+    MARK_FILE,
+    NEW_FILES_FOLDER,
+    TEMPORARY_PREFIX,
+    find_abandoned_staging,
+    read_file,
+    staging_directory,
+    write_new,
+)
 
 SECRET = "xK7-of-somebody-else"
 RECORDS = {"a.csv": '"a.csv"', "a.AT2": '{x = "a.AT2"}', "suite/a.csv": '{suite = "suite", motion = 1}'}
@@ -69,6 +77,16 @@ def test_a_folder_of_somebody_else_is_no_staging_directory(tmp_path: Path) -> No
                 f'{{"what": "staging directory of phase-resonance", "name": "{folder.name}", "for": "{other}"}}'
             )
     assert [folder.name for folder in find_abandoned_staging(place)] == [f"{TEMPORARY_PREFIX}left"]
+
+
+def test_what_somebody_puts_into_a_staging_directory_stays(tmp_path: Path) -> None:
+    for theirs in (False, True):
+        with staging_directory(tmp_path / "out") as folder:
+            (folder / NEW_FILES_FOLDER / "ours.csv").write_bytes(b"ours")
+            if theirs:
+                (folder / "theirs.csv").write_bytes(b"theirs")
+        assert folder.exists() == theirs
+    assert [file.relative_to(tmp_path).parts[1:] for file in tmp_path.rglob("*.csv")] == [("theirs.csv",)]
 
 
 def test_a_file_is_read_up_to_the_largest_size_and_a_link_followed(tmp_path: Path) -> None:
