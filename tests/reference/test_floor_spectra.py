@@ -41,6 +41,17 @@ def test_the_floors_of_a_motion_agree_with_scipy() -> None:
             assert spectra.acceleration[body, 0, row] == pytest.approx(expected, rel=2e-3)
 
 
+@pytest.mark.parametrize("end", [0.1, 1.0, 1.7])
+def test_a_ramp_between_two_samples_has_its_closed_form(end: float) -> None:
+    """Without damping omega^2 y is the ramp less sin(omega t) / omega t of its top, which never falls."""
+    time, total = np.array([0.0, end]), np.zeros((2, 1, 3))
+    total[1, 0, 1] = 3.0
+    period = 0.8
+    found = reference.floor_spectra(made_up(chain(duration=end), time, absolute_acceleration=total), [period], 0.0)
+    turned = 2.0 * np.pi * end / period
+    assert found.acceleration[0, 1, 0] == pytest.approx(3.0 * (1.0 - np.sin(turned) / turned), rel=1e-9)
+
+
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-II", None), ("fig3-II", 1e-3), ("synthetic-pair", None)])
 def test_more_samples_change_less_than_the_error(name, regularization) -> None:
     scene = reference.load_scene(name).with_values({"duration": 10.0})

@@ -107,6 +107,13 @@ def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:
     assert (multibody.trajectory(scene, (0.0, 0.0)).status, len(alone["stops"].value)) == ("non-finite load", 2)
 
 
+def test_a_demand_that_is_not_there_is_named() -> None:
+    surface = reference.peak_demands(chain(duration=0.5), [(0.3, 1.1)])
+    assert ("drift" in surface, "uplift" in surface) == (True, False)
+    with pytest.raises(KeyError, match="drfit"):
+        surface["drfit"]
+
+
 def test_every_outcome_keeps_its_whole_name() -> None:
     """The names have from two to two dozen letters."""
     scene, ended = chain(duration=0.2), iter(Outcome)

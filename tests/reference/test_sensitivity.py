@@ -204,7 +204,8 @@ def test_a_change_without_an_answer_is_unknown_and_costs_nothing_else() -> None:
         return Estimate(scene.isolator.friction, 1e-9)  # type: ignore[arg-type]
 
     found = sensitivity(ONE_BODY, [FRICTION], ends)[FRICTION]
-    assert np.isnan(found.change.value).tolist() == [False, False, False, True]
+    for column in (found.change.value, found.change.error):
+        assert np.isnan(column).tolist() == [False, False, False, True]
     assert found.value == pytest.approx(1.0)
 
 

@@ -159,6 +159,25 @@ def test_searches_merge_move_and_end_by_their_rules(monkeypatch: pytest.MonkeyPa
     assert surface.outcome == "contact lost", "the last that was not ok"
 
 
+def test_a_search_narrows_only_where_its_best_pair_moved_little_along_both_phases(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    surface = local_search.Surface(scene_with(monkeypatch, hill), phase_maximum.amplification, {}, 0)
+    for away, narrows in (([1.0, 0.0], False), ([0.0, 1.0], False), ([0.01, 0.01], True)):
+        search = LocalSearch(TOP + away, 1.0, 0.0, 0.2)
+        local_search.advance_searches(surface, [search])
+        assert (search.half_width < 0.2) == narrows
+        assert search.half_width > 0.0
+
+
+def test_a_search_starts_where_the_motion_has_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    lost = scene_with(monkeypatch, lambda phases: np.where(phases[:, 0] < 1.0, np.nan, 2.0))
+    surface = local_search.Surface(lost, phase_maximum.amplification, {}, 0)
+    searches = phase_maximum._start_searches(surface, np.array([[0.5, 0.1], [1.5, 0.2], [2.5, 0.3], [0.7, 0.4]]))
+    assert [each.phases.tolist() for each in searches] == [[1.5, 0.2], [2.5, 0.3]]
+    assert [each.value for each in searches] == [2.0, 2.0]
+
+
 def test_a_wrong_argument_and_a_record_are_refused_in_one_line() -> None:
     for name, value, said in (
         ("body", 0, "body = 0: must be an integer from 1 to 2"),

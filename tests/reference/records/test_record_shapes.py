@@ -123,6 +123,8 @@ def test_a_unit_of_the_scene_is_that_of_a_table_without_one():
     assert samples[0].tolist() == [0.0, 0.02, 0.01, 0.0]
     two = refusal(read, "time [s],ax [g]\n" + rows(), "a.csv", unit="gal", kind=RecordError)
     assert "line 1: column 'ax [g]': the scene says unit = 'gal': remove one of them" in str(two)
+    untold = refusal(read, "time [s],ax [g],acceleration [g]\n0,1,2\n1,3,4\n", "a.csv", kind=RecordError)
+    assert "two have one direction, or none is told: name them ax, ay, az" in str(untold), "no column is left out"
     unknown = refusal(read, "time [s],ax [yd/s^2]\n" + rows(), "a.csv", unit="gal", kind=RecordError)
     assert "line 1: column 'ax [yd/s^2]': unknown unit 'yd/s^2'" in str(unknown), "not taken for that of the scene"
 

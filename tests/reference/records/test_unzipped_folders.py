@@ -177,6 +177,13 @@ def test_a_list_of_motions_overrides_names(tmp_path):
     assert "times 2.5, the factor of motions.csv" in family.scenes[0].excitation.origin
 
 
+def test_two_motions_of_one_name_are_refused(tmp_path):
+    place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2")
+    (place / FILE_NAME).write_text("name,x,y,z,factor\nfirst,GM001.AT2,,,1\nother,GM001.AT2,,,1\nfirst,GM002.AT2,,,2\n")
+    said = str(refusal(list_motions, str(place), place, kind=SuiteError))
+    assert "line 4: 'first': two motions have one name" in said
+
+
 TWO_COLUMNS = "0.5 -1.0\n1.5 2.0\n-0.5 1.0\n0.1 0.2\n"
 
 
