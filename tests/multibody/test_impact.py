@@ -372,6 +372,8 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     model.depressions, model.critical_tilt = Mock(**{"is_near_rest.return_value": False}), 1.9
     model.depressions.rows_beyond_rim.return_value = np.zeros(5, bool)  # as of a plane
     assert _find_end_of_validity(steep, model) == (Outcome.OVERTURNED, 4), "beyond 90 degrees"
+    model.critical_tilt, model.depressions.rows_beyond_rim.return_value = 0.6, np.arange(5) >= 1
+    assert _find_end_of_validity(steep, model) == (Outcome.RIM_REACHED, 1), "tilted by 0.5 rad there, and more later"
     for beyond, near, limit, expected in (
         (3, False, 0.4, (Outcome.OVERTURNED, 3)), (3, False, 0.6, (Outcome.RIM_REACHED, 3)),
         (5, False, 0.4, (Outcome.OK, 4)), (3, True, 0.4, (Outcome.OK, 4)),

@@ -10,6 +10,7 @@ from scenes_at_hand import one_body
 import multibody
 import reference
 from multibody.integration.constant_step import silence_engine
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.integration.step_control import StepControl
 from multibody.models.assembly import assemble
@@ -116,6 +117,17 @@ def test_friction_that_depends_on_the_load_has_second_order_at_a_constant_step()
         exact = reference.trajectory(scene, (0.3, 1.1), regularization=V_REG, times=motion.time)
         errors.append(abs(motion.position[:, 0, :2] - exact.position[:, 0, :2]).max())
     assert errors[1] < errors[0] / 12.0 < 1e-6
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+@pytest.mark.parametrize("law", [{"load_exponent": -0.3}, {"yield_displacement": 1e-3}], ids=["of load", "yielding"])
+def test_contact_forces_that_nobody_asks_for_change_no_motion(model: str, law: dict[str, float]) -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 0.4, "isolator.friction": {"slow": 0.05, **law}})
+    level, peaks = multibody.levels(scene, model)[0], []
+    for contact_force in (False, True):
+        pair = PhasePair(scene, assemble(scene, model, V_REG, contact_force=contact_force), np.array([0.3, 1.1]))
+        peaks.append(pair.run_level(level, Budget(1e6)).peaks.value)
+    np.testing.assert_array_equal(*peaks)
 
 
 @pytest.mark.parametrize("name", ["constant", "rising", "lubricated", "yielding"])

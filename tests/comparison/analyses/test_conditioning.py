@@ -439,6 +439,11 @@ def test_yield_displacements_have_a_panel_and_a_table_of_their_own() -> None:
     assert panel["plot"]["x"] == {"title": "yield displacement u_y, m", "log": True}
     lines = {line["name"]: line for line in panel["plot"]["series"]}
     assert lines["largest, links damped by 5 %"]["y"] == [2.1, 2.3, 2.2]
+    colors = {name: line["color"] for name, line in lines.items() if "rigid" not in name}
+    assert len({*colors.values()}) == len(colors) == 4, colors
+    undamped = [replace(curve, damping=0.0) for curve in _known_yields() if curve.damping is not None]
+    *_, panel = conditioning_panels([*known_curves(), *undamped])
+    assert {line["name"].split(", ")[1] for line in panel["plot"]["series"]} == {"links damped by 0 %"}
     assert lines["mean, links as stated, rigid, literal supremum"]["y"] == [2.3, 2.3]
     *others, table = conditioning_tables([*known_curves(), *_known_yields()])
     assert others == conditioning_tables(known_curves())

@@ -1,5 +1,6 @@
 """Demands under a suite of motions at many intensities: fractiles, the engine's motions, the command and its files."""
 
+import argparse
 import csv
 import hashlib
 import json
@@ -21,7 +22,13 @@ import reference
 from comparison.analyses.ensemble import analysis, governing, quantities, statistics
 from comparison.analyses.ensemble import members as member_lists
 from comparison.analyses.ensemble.build import GROUND_PERIODS, describe_ground, read_suite
-from comparison.analyses.ensemble.command import CHECKS_FILE, WRITTEN_FILES, bound_engine_motion_count, main
+from comparison.analyses.ensemble.command import (
+    CHECKS_FILE,
+    WRITTEN_FILES,
+    bound_engine_motion_count,
+    main,
+    make_suite_family,
+)
 from comparison.analyses.ensemble.governing import bound_motion_count
 from comparison.analyses.ensemble.members import SCALE_KEY, EnsembleMember, list_members, with_suite
 from comparison.analyses.ensemble.rows import label_structures
@@ -323,6 +330,15 @@ def test_each_motion_of_the_engine_is_computed_by_every_model(monkeypatch: pytes
             analysis.compute_demands(task.argument)
     assert used == tolerances
     assert len(replace(ensemble, spatial=False).make_engine_tasks([governing.ChosenMember(member, ())])) == 3
+
+
+@pytest.mark.parametrize(("steps", "scales"), [("1", (0.5,)), ("2", (0.5, 2.0)), ("4", (0.5, 1.0, 1.5, 2.0))])
+def test_scales_begin_at_the_lowest(folder: Path, steps: str, scales: tuple[float, ...]) -> None:
+    options = argparse.Namespace(
+        suite="suite", components=None, normalized=False, scales=["0.5", "2", steps], bounds=None
+    )
+    family = make_suite_family(options, "mine.toml")
+    assert [*dict.fromkeys(scene.excitation.scale for scene in family.scenes)] == pytest.approx(scales)
 
 
 def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -696,8 +696,17 @@ def test_lists_of_the_report_end_and_sizes_and_heights_are_of_every_body() -> No
         ]
         line, *_ = sentences.missing_sentences(replace(planted(), stripes=lost, curves=curves), structure)
         assert f" ({', '.join(f'm{number}' for number in range(12))}{end}): every demand" in line
+    held = replace(planted(), curves=[replace(planted().curves[0], values=(0.0,)), *curves[:1]])
+    assert sentences.list_motions_without_displacement(held, structure) == ["m0"], "no slide is a displacement of 0"
     assert rows.word_cell(Statistic(2.0, 0.0), 10.0, 4, 5, "support_force_min") == "20 (smallest)"
     assert rows.word_cell(Statistic(None, None), 10.0, 4, 5, "support_force_min") == "none"
+
+
+def test_a_table_of_models_is_headed_by_the_motions_of_its_first_demand(capsys: pytest.CaptureFixture[str]) -> None:
+    found = with_demand(planted(), "support_force_min", None, exact=(9.0, 8.0, 4.0, 2.0), spatial=(9.0, 8.0, 3.6, 1.0))
+    fewer = [each for each in found.curves if (each.quantity, each.motion) != ("support_force_min", "m3")]
+    terminal.print_engine(make_wide_console(), replace(found, curves=fewer))
+    assert "b, mean difference from the exact equations on 2 motions:" in capsys.readouterr().out
 
 
 def test_models_stand_beside_each_other_on_the_motions_that_all_have(capsys: pytest.CaptureFixture[str]) -> None:

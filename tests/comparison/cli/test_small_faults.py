@@ -19,6 +19,7 @@ import reference
 from comparison.analyses.ensemble import table as ensemble
 from comparison.cli import start
 from comparison.cli.arguments import EndedEarlyError, write_and_show
+from comparison.cli.arguments import command as command_of
 from comparison.cli.start import list_commands
 from reference.problem import load_family
 from reference.problem.scene_file import parse_scene
@@ -127,3 +128,13 @@ def test_two_dashes_are_the_value_of_no_option(words: tuple[str, ...], capsys: p
     assert main(options) == 2
     said = capsys.readouterr().err
     assert said == f"command line: argument {options[-1][:-3]}: expected a value, not '--' (--help lists the options)\n"
+
+
+@pytest.mark.parametrize(("given", "expected"), [((), ["words", "typed"]), (([],), []), ((("a", "b"),), ["a", "b"])])
+def test_a_command_takes_the_words_typed_only_if_none_are_given(
+    given: tuple[Any, ...], expected: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[Any] = []
+    monkeypatch.setattr(sys, "argv", ["script.py", "words", "typed"])
+    assert command_of(lambda words: seen.append(words) or 0)(*given) == 0
+    assert seen == [expected]

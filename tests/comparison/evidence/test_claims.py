@@ -14,7 +14,7 @@ from terminal_tables import rows_under
 
 from comparison.cli import computing
 from comparison.evidence.claims import table as table_module  # table: what a test made
-from comparison.evidence.claims.checks import StatementVerdict, _describe_curvatures, count_peaks
+from comparison.evidence.claims.checks import StatementVerdict, _describe_curvatures, count_peaks, find_unequal_axes
 from comparison.evidence.claims.claims import CLAIMS, PaperStatement
 from comparison.evidence.claims.command import main
 from comparison.evidence.claims.evidence import MOTION_PHASES, CaseInReading, Evidence, gather_evidence
@@ -423,3 +423,15 @@ def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:
 def test_a_flat_surface_is_no_fold_however_its_errors_are_curved() -> None:
     evidence = _seen(np.full((N, N), 1.3), SEVERAL_PEAKS)
     assert _describe_curvatures(replace(evidence, case="dry")) == "dry: mu_1 flat, mu_2 fold (h^1.0)"
+
+
+def test_the_reason_of_unequal_axes_is_the_number_of_the_second_body() -> None:
+    for second, verdict in ((0.9, MET), (1e-4, NOT_MET)):
+        found = find_unequal_axes(replace(_seen(FOUR, TWO), apart=(0.3, second)))
+        assert (found.verdict, found.reason) == (verdict, f"|x_2 - y_2| up to {second:.2g} of the largest")
+
+
+@pytest.mark.parametrize("verdict", [MET, NOT_MET, NOT_COMPARED])
+def test_every_verdict_on_a_statement_has_a_reason(verdict: Verdict) -> None:
+    with pytest.raises(ValueError, match="needs one"):
+        StatementVerdict(verdict, "")

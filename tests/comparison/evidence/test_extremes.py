@@ -3,6 +3,7 @@
 import re
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.columns import COLUMNS
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import STORED, CellVerdict
+from comparison.evidence.extremes.matrix import STORED, CellVerdict, MatrixEntry
 from comparison.evidence.extremes.rows import list_extreme_cases
 from comparison.evidence.extremes.scenes import make_baseline_scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, make_process_pool
@@ -321,3 +322,12 @@ def test_an_error_estimate_that_is_none_of_one_body_fails(error: tuple[float, fl
     verdicts = [analysis.judge_answer(analysis.ModelAnswer(mu, np.array([each]), ok), [finer], 1e-3, False, ()).verdict
                 for each in (error, (1e-5, 1e-5))]  # fmt: skip
     assert verdicts == [CellVerdict.FAILED, CellVerdict.CONVERGED]
+
+
+def test_an_engine_of_the_user_has_a_column_beside_the_model_that_it_is_like() -> None:
+    own = replace(COLUMNS[0], key="mine", title="My engine", like=COLUMNS[0].key)
+    entries = {key: MatrixEntry("converged", key) for key in (COLUMNS[0].key, "mine")}
+    results: Any = SimpleNamespace(value=lambda task, failure: entries[task.argument.column.key])
+    matrix = analysis.Extremes([replace(PLAIN, columns=(COLUMNS[0].key,))], [COLUMNS[0], own]).collect(results)
+    assert matrix.columns == {COLUMNS[0].key: COLUMNS[0].title, "mine": "My engine"}
+    assert matrix.rows[0].entries == entries

@@ -33,6 +33,7 @@ from comparison.runner.output import publish_files
 from comparison.study.batches import import_function
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
+from reference.support.command import UsageError
 
 SCENE = load_scene("fig3-I")
 
@@ -417,6 +418,18 @@ def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
         "the same work for all, and two calls to warm each up"
     )
     assert np.diff(timed)[::2].tolist() == [growth.WORKER_CALLS] * 3, "the clock starts when all are warm"
+
+
+def test_an_earlier_table_that_is_damaged_is_refused_and_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("out").mkdir()
+    for content in (b"{", b'{"schema": "another"}', b"[1, 2]"):
+        (Path("out") / trade.STORED.name).write_bytes(content)
+        with pytest.raises(UsageError, match=f"{trade.STORED.name}: not a measured trade"):
+            command._load_trades(Path("out"))
+        assert (Path("out") / trade.STORED.name).read_bytes() == content
 
 
 def test_two_files_of_one_name_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

@@ -10,6 +10,7 @@ from itertools import product
 from pathlib import Path
 from shutil import copyfile
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -304,19 +305,25 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         ) in found.facts
 
 
-def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path, monkeypatch):
-    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
-    half, loss, step = 0.39, 0.005, 1.5e-4
+def known_decay(half: float, loss: float, step: float) -> FreeSwing:
+    """Half period, s, angle lost in a half swing and step of the encoder, rad; slower by 1 % behind five of them."""
     time = np.arange(-0.3 * half, 16.0 * half, 1e-3)
     slower = np.where(time < 5.0 * half, time, 5.0 * half + (time - 5.0 * half) / 1.01)  # as no side computes it
     number = np.floor(slower / half)
     middle = 0.5 * loss * (-1.0) ** number  # a half swing is a cosine about a point that friction shifts
     angle = middle + (0.0659 - (number + 0.5) * loss) * np.cos(np.pi * slower / half)
     angle[number >= 13] = angle[number < 13][-1]
-    values = math.pi - step * np.round(angle / step)
-    savemat(tmp_path / DECAY_FILE, {"Theta1": {"time": time, "signals": {"values": values}}})
+    return FreeSwing(time, -step * np.round(angle / step))
+
+
+def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path, monkeypatch):
+    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
+    half, loss, step = 0.39, 0.005, 1.5e-4
+    known = known_decay(half, loss, step)
+    signals = {"values": math.pi + known.angle}
+    savemat(tmp_path / DECAY_FILE, {"Theta1": {"time": known.time, "signals": signals}})
     swing = read_folder(tmp_path).decay
-    np.testing.assert_allclose(swing.angle, values - math.pi, atol=1e-12)
+    np.testing.assert_allclose(swing.angle, known.angle, atol=1e-12)
     found = pendulum.compare_decay(swing)
     assert float(found.inputs[1].split("swing ")[1].split(" ")[0]) == pytest.approx(loss, abs=3e-5)
     turns = np.array(found.curves[0].y[:11])  # mrad
@@ -508,6 +515,22 @@ def test_a_side_without_a_value_is_an_exit_code(monkeypatch, tmp_path: Path, cap
         assert cells.count("-") == 2 * code
 
 
+@pytest.mark.parametrize("side", [SMOOTHED, ENGINE])
+def test_what_one_side_computes_is_its_own(side: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: a motion of that side alone whose times are a tenth longer."""
+    asked, compute = [], pendulum._compute_half_swings
+
+    def longer(by: str, *given: Any) -> Any:
+        asked.append(by)
+        return compute(EQUATIONS, 1.1 * given[0] if by == side else given[0], *given[1:])
+
+    monkeypatch.setattr(pendulum, "_compute_half_swings", longer)
+    found = pendulum.compare_decay(known_decay(0.39, 0.005, 1.5e-4))
+    assert {*asked} == {EQUATIONS, SMOOTHED, ENGINE}
+    values = {by: found.quantities[5].sides[by].value for by in (EQUATIONS, SMOOTHED, ENGINE)}
+    assert {by for by, value in values.items() if value == pytest.approx(1.1 * values[EQUATIONS], rel=1e-3)} == {side}
+
+
 def test_a_comparison_error_is_within_all_uncertainties():
     """0.03, 0.04 and 0.12 make 0.13: 0.1285 is within, 0.135 is not; the engine's error is 0.02."""
     one, nan = np.ones(4), np.nan
@@ -525,5 +548,8 @@ def test_a_comparison_error_is_within_all_uncertainties():
     assert [each.sides[EQUATIONS].error for each in rows] == pytest.approx([0.1285, 0.135, 0.0])
     assert rows[0].sides[EQUATIONS].validation == pytest.approx(0.13)
     assert [each.cause for each in rows] == ["0: 0.1281", f"1: {math.hypot(0.02, 0.04, 0.12):.4f}", ""]
+    alike = {side: answers[SMOOTHED if side == SMOOTHED else EQUATIONS] for side in answers}
+    (met, *_) = table.compare_quantities("run", data, alike, varied, lambda k, allowed: "a cause")
+    assert (met.sides[SMOOTHED].verdict, met.sides[ENGINE].verdict, met.cause) == (NOT_MET, MET, "")
     with pytest.raises(ValueError, match="sides must have engine"):
         replace(rows[0], sides={EQUATIONS: rows[0].sides[EQUATIONS]})

@@ -77,6 +77,7 @@ SENSELESS = [
     (VALIDATION.name, ("quantities", 0, "sides"), {}, "sides must have equations"),
     (VALIDATION.name, ("curves",), [{**CURVE, "name": "another"}], "name of a curve must be one of"),
     (VALIDATION.name, ("curves",), [{**CURVE, "y": []}], "y must be 1 values, not 0"),
+    (VALIDATION.name, ("curves",), [{**CURVE, "y": [2.0, 3.0]}], "y must be 1 values, not 2"),
     (BENCHMARKS.name, ("benchmarks", 0, "rows", 0, "numbers"), {}, "numbers must have equations"),
 ]  # fmt: skip
 
@@ -90,6 +91,12 @@ def test_fields_that_contradict_each_other_are_refused(
         STORES[name].load(tmp_path)
     assert str(refused.value).count("\n") == 0
     assert name in str(refused.value)
+
+
+def test_a_field_of_another_type_is_named_with_its_place(tmp_path: Path) -> None:
+    (tmp_path / STORED.name).write_bytes(edited(STORED.name, ("trades", 0, "bodies"), "two"))
+    with pytest.raises(ValueError, match=r": trades\.0\.bodies: .* integer.*: run "):
+        STORED.load(tmp_path)
 
 
 def test_a_result_without_computed_fields_has_no_other_keys() -> None:

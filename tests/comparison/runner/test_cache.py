@@ -8,6 +8,7 @@ import hashlib
 import os
 import pickle
 import platform
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -128,6 +129,17 @@ def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: p
     for text, name in names.items():
         monkeypatch.setattr(Path, "read_text", lambda *rest, text=text, **more: text)
         assert environment._read_processor_name() == name
+
+
+def test_git_is_asked_about_the_folder_and_not_about_where_the_command_began(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name / "inner").mkdir(parents=True)
+        subprocess.run(["git", "init", "-q", str(tmp_path / name)], check=True)
+    monkeypatch.chdir(tmp_path / "one")
+    told = environment.ask_git(tmp_path / "two" / "inner", "rev-parse", "--show-toplevel")
+    assert Path(told).resolve() == (tmp_path / "two").resolve()
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

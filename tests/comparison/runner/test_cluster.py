@@ -166,6 +166,15 @@ def test_a_cluster_without_workers_is_waited_for_a_minute(monkeypatch: pytest.Mo
         executor.width  # noqa: B018
 
 
+@pytest.mark.parametrize(("status", "ended"), [("running", [False]), ("closed", [])])
+def test_abandoned_calls_of_a_cluster_are_not_waited_for(status: str, ended: list[bool]) -> None:
+    waits: list[bool] = []
+    inner = SimpleNamespace(shutdown=lambda wait: waits.append(wait))
+    client: Any = SimpleNamespace(status=status, get_executor=lambda pure: inner)
+    dask.ClusterExecutor(client).abandon()
+    assert waits == ended
+
+
 def test_a_worker_of_a_cluster_keeps_the_time_limit_of_a_call(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
 

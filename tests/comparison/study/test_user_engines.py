@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -175,6 +176,10 @@ def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: p
         load_user_models(["mine=engine_that_leaves:f"])
     assert sys.path[-1] == str(tmp_path), "last, so that it hides nothing"
     monkeypatch.setattr("comparison.cli.user_models.Workers", Here)
+    typed = "mine=user_engines:no_such_function@small"
+    with pytest.raises(SceneError) as told:
+        load_user_models([typed])
+    assert (told.value.key, told.value.value) == ("--model", typed)
     (model,) = load_user_models(["mine=user_engines:plain@small"], "7.5")
     assert (model.timeout, model.like) == (7.5, "small")
 
@@ -184,6 +189,12 @@ def test_functions_are_used_from_python_by_their_place() -> None:
     assert words == ["--model", "a=user_engines:plain", "--model", "b=user_engines:raises@exact"]
     with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
         word_engine_options({"a": lambda scene, phases: None})
+
+    def nested(scene: object, phases: object) -> None: ...
+
+    for unnamed in (nested, partial(user_engines.plain)):
+        with pytest.raises(SceneError, match="worker processes import an engine by its name: define it at the top"):
+            word_engine_options({"a": unnamed})
 
 
 @pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])

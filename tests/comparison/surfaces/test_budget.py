@@ -10,16 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from fake_models import fake_hierarchy
 from studies import GRID, body_comparisons, planted_study, solved
 
 from comparison.study.batches import import_function
-from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.models import MODEL_HIERARCHY, Model, why_not_spatial
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.budget import TOTAL, BudgetEntry, compute_closure_error, list_budget_entries
 from comparison.surfaces.differences import Difference
-from comparison.surfaces.distribution import find_grid_maxima
+from comparison.surfaces.distribution import compute_distributions, find_grid_maxima
 from comparison.surfaces.missing_values import list_missing_values
 from comparison.surfaces.model_difference import RESOLVED_RATIO, ModelDifference
 from reference.problem import builtin_scenes, load_scene
@@ -263,3 +264,16 @@ def test_a_resolved_step_is_known_to_a_fifth_of_itself(name: str) -> None:
             assert (np.abs(found.size - size)[found.resolved] <= 0.2 * np.abs(size[found.resolved])).all(), pair.key
             real += int(found.resolved.sum())
     assert real > 16, "many are called so"
+
+
+def test_a_model_without_its_spatial_data_is_told_which_body_lacks_it() -> None:
+    scene = load_scene("fig3-I").with_values({"bodies.1.size": None})
+    assert why_not_spatial(scene) == "no spatial model, as it lacks bodies.1.size"
+
+
+def test_one_value_under_a_record_is_a_distribution() -> None:
+    study = Study((load_scene("synthetic-pair"),), 4, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    listed = compute_distributions(surfaces, study.scenes[0], study.hierarchy[:1])
+    assert [(each.body, each.points, each.unknown) for each in listed] == [(1, 1, 0.0), (2, 1, 0.0)]
+    assert {*listed[0].curve} == {listed[0].mean.value}

@@ -23,8 +23,8 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
-from comparison.surfaces.figures import paper
-from comparison.surfaces.figures.pairs import _draw_difference_map, draw_map, find_height_limits
+from comparison.surfaces.figures import pairs, paper
+from comparison.surfaces.figures.pairs import _draw_difference_map, draw_map, draw_pair, find_height_limits
 from comparison.surfaces.figures.paper import draw_paper_figure
 from comparison.surfaces.figures.pictures import Pictures
 from reference.problem import Scene, load_scene
@@ -122,3 +122,21 @@ def test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take(
     (page,) = PdfReader(tmp_path / "paper.pdf").pages
     fonts = [font.get_object() for font in page["/Resources"]["/Font"].values()]
     assert {font["/Subtype"] for font in fonts} == {"/Type0"}, "TrueType: type 42"
+
+
+@pytest.mark.parametrize("higher", ["first", "second"])
+def test_both_surfaces_of_a_picture_have_a_scale_that_holds_both(
+    higher: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    [scene], pair = study.scenes, study.pairs(study.scenes[0])[0]
+    surfaces["mu"].loc[{"model": getattr(pair, higher).key}] *= 5.0
+    shown: list[Any] = []
+    monkeypatch.setattr(
+        pairs, "_draw_surface", lambda axes, phases, height, low, high: shown.append((height, low, high))
+    )
+    draw_pair(tmp_path / "pair.png", surfaces, scene, 1, pair)
+    (one, *limits), (other, *same) = shown
+    assert limits == same
+    assert limits[0] <= min(one.min(), other.min()) < max(one.max(), other.max()) <= limits[1]

@@ -15,6 +15,7 @@ from reference.support.files import (
     find_abandoned_staging,
     read_file,
     staging_directory,
+    write_atomically,
     write_new,
 )
 
@@ -77,6 +78,18 @@ def test_a_folder_of_somebody_else_is_no_staging_directory(tmp_path: Path) -> No
                 f'{{"what": "staging directory of phase-resonance", "name": "{folder.name}", "for": "{other}"}}'
             )
     assert [folder.name for folder in find_abandoned_staging(place)] == [f"{TEMPORARY_PREFIX}left"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="this system has no such permissions")
+@pytest.mark.parametrize("mask", [0o022, 0o027, 0o077])
+def test_a_file_may_be_read_by_whom_the_user_lets_read(tmp_path: Path, mask: int) -> None:
+    before = os.umask(mask)
+    try:
+        write_atomically(tmp_path / "report.html", b"page")
+        write_new(tmp_path / "run.gif", b"film")
+    finally:
+        os.umask(before)
+    assert {file.stat().st_mode & 0o777 for file in tmp_path.iterdir()} == {0o666 & ~mask}
 
 
 def test_what_somebody_puts_into_a_staging_directory_stays(tmp_path: Path) -> None:
