@@ -16,10 +16,12 @@ from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
 from reference.measures.story_forces import story_forces
 from reference.problem import State, load_scene
+from reference.solver import ground, look_ahead, peaks
 from reference.solver.contact import stop_arc
 from reference.solver.peaks import update_peak_by_limit
-from reference.solver.phases import follow, stopping
+from reference.solver.phases import follow, sliding, stopping
 from reference.solver.record import record_stick
+from reference.solver.system import SET_VALUED, YIELDING
 
 
 def test_fractiles_are_named_in_rising_order_and_follow_hazen() -> None:
@@ -124,6 +126,88 @@ def test_two_runs_that_agree_by_chance_leave_the_error_of_their_tolerance(monkey
     assert len(runs) == 2
     np.testing.assert_allclose(found.accuracy.peak_error, found.accuracy.floor * found.peak, rtol=1e-12)
     assert (found.accuracy.peak_error > 1e-7 * found.peak).all()
+
+
+@pytest.mark.parametrize("place", [-1.0, 0.0, 0.07, 1.03, 1.3, 1.49, 2.0])
+def test_a_peak_over_an_arc_is_found_on_either_side_of_the_best_sample(
+    place: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A cosine over 1.5 rad, highest at `place` or at the nearer end; below the floor the best sample is enough."""
+    squared = lambda system, load, angle, horizontal: horizontal + math.cos(angle - place)  # noqa: E731
+    monkeypatch.setattr(stop_arc, "squared_absolute_acceleration", squared)
+    for begin, end in ((0.0, 1.5), (1.5, 0.0)):
+        found = stop_arc.arc_peak.py_func(None, None, begin, end, 0.0, 4.0)
+        assert found == pytest.approx(4.0 + math.cos(min(max(place, 0.0), 1.5) - place), abs=1e-9)
+        assert found >= stop_arc.arc_peak.py_func(None, None, begin, end, 99.0, 4.0) > found - 0.02
+
+
+def test_a_record_has_the_friction_of_the_instant_before_and_behind_its_samples(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(ground, "friction_temperature_factor_at", lambda system, time: 0.5 + 0.1 * time)
+    monkeypatch.setattr(ground, "next_knot", lambda record, time: int(np.searchsorted(record[:, 0], time, "right")))
+    record: Any = SimpleNamespace(record=np.array([[1.0, 2.0, 3.0, 4.0], [2.0, 4.0, -3.0, 0.0]]))
+    for time, expected in ((0.5, (2.0, 3.0, 4.0)), (1.25, (2.5, 1.5, 3.0)), (2.5, (0.0, 0.0, 0.0))):
+        found = ground.record_acceleration_at.py_func(record, time)
+        assert (found.x, found.y, found.z) == pytest.approx(expected)
+        assert found.k_t == 0.5 + 0.1 * time
+
+
+@pytest.mark.parametrize("yields", [False, True])
+def test_velocity_errors_change_a_body_through_each_of_its_own_springs(
+    yields: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of three bodies; friction that yields is one more spring of the platform."""
+    random = np.random.default_rng(8)
+    defect, below, above = random.uniform(1.0, 3.0, (3, 3, 2))
+    below[0], above[2] = np.nan, np.nan  # no springs
+    monkeypatch.setattr(peaks, "velocity_defect", lambda work, body, axis: defect[body, axis])
+    law, stiffness = (YIELDING, 7.0) if yields else (SET_VALUED, np.nan)
+    system: Any = SimpleNamespace(below=below, above=above, law=law, stiffness=stiffness)
+    for body in range(3):
+        rates = np.zeros(2)
+        for other, springs in ((body - 1, below[body]), (body + 1, above[body])):
+            if 0 <= other < 3:
+                rates += springs * (defect[other] - defect[body])
+        rates -= 7.0 * defect[0] if yields and body == 0 else 0.0
+        found = peaks.link_error_rate.py_func(system, SimpleNamespace(x=np.zeros((3, 2))), 0.2, body)
+        assert found == pytest.approx(0.2 * np.hypot(*rates))
+
+
+def test_a_platform_at_rest_may_slip_from_eight_tenths_of_its_squared_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a rough run; it is then as fast as a slide near its stop, else as the ground."""
+    monkeypatch.setattr(look_ahead, "static_limit", lambda system, k_t, reaction: 0.5 * reaction)
+    monkeypatch.setattr(look_ahead, "largest_near_stop", lambda gx, gy, *rest: 100.0 + gx + 10.0 * gy + rest[-1])
+    load: Any = SimpleNamespace(k_t=1.0, fx=1.0, fy=2.0, px=0.5, py=-0.25)
+    shaken: Any = SimpleNamespace(x=3.0, y=-4.0)
+    limit, system = 0.5 * 4.0, SimpleNamespace(radius=2.0)
+    for share, bound in ((0.79, 5.0), (0.81, 100.0 + (1.0 - 1.0) + 10.0 * (2.0 + 0.5) + limit)):
+        excess = (share - 1.0) * limit**2
+        found = look_ahead.bound_held_acceleration.py_func(system, load, shaken, excess, 4.0)
+        assert found == (share > 0.8, pytest.approx(bound))
+
+
+def test_a_slide_from_rest_that_fails_is_given_up_only_below_the_response_time_of_its_friction(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Friction that changes fast with the speed needs shorter steps than the loading does."""
+    monkeypatch.setattr(sliding, "coefficient_slope", lambda system, speed: -50.0)
+    long = sliding.NEGLIGIBLE_STEP * 3.0
+    short = min(sliding.NEGLIGIBLE_RESPONSE / (50.0 * 2.0 * 10.0), 0.5 * long)
+    monkeypatch.setattr(sliding, "NEGLIGIBLE_RESPONSE", short * 50.0 * 2.0 * 10.0)
+    settings, give_up = SimpleNamespace(period=3.0), (sliding.UNSOLVED, sliding.SLIDING)
+    for rate, length, slips, speed, expected in (
+        (0.0, 0.9 * long, False, 0.0, give_up),
+        (0.0, 0.9 * long, True, 0.0, (sliding.SOLVED, sliding.REST)),
+        (0.0, 1.1 * long, False, 0.0, (sliding.SOLVED, sliding.SLIDING)),
+        (9.0, 0.9 * long, False, 0.0, (sliding.SOLVED, sliding.SLIDING)),
+        (9.0, 0.9 * short, False, 0.0, give_up),
+        (9.0, 0.9 * short, False, 1.0, (sliding.SOLVED, sliding.SLIDING)),
+    ):
+        monkeypatch.setattr(sliding, "barely_slips", lambda system, work, slips=slips: slips)
+        work: Any = SimpleNamespace(v=np.array([[0.0, speed]]), last_length=1.0, max_growth=9.0, hold_time=0.0)
+        system: Any = SimpleNamespace(rate=rate, mass_ratio=2.0, gravity=10.0)
+        assert sliding.recover_failed_slide.py_func(system, work, settings, length) == expected
 
 
 def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:
