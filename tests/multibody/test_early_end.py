@@ -214,7 +214,7 @@ def test_a_look_ahead_begins_a_period_behind_the_last_large_value(monkeypatch: p
 
 
 def test_a_look_ahead_that_fails_near_no_large_value_is_no_quiet_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The run goes on in accurate steps behind the failure, and fails itself or not."""
+    """The accurate run goes on from where the look ahead began; here it fails, too."""
     begun: list[tuple[EngineRun, float]] = []
 
     def failed(integration: Integration, run: EngineRun, at: Checkpoint, pause: Any) -> Checkpoint:

@@ -70,7 +70,7 @@ def test_an_oblong_block_that_is_turned_is_hit_as_one_of_exchanged_moments() -> 
 
 
 def test_an_impact_turns_with_the_block_and_its_corners() -> None:
-    """All by the same yaw, between no turn and a quarter; of three different moments of inertia."""
+    """A block of three different moments of inertia is turned by a yaw between zero and a quarter of a turn."""
     turned = Rotation.from_euler("z", 0.6).as_matrix()
     before = np.array([0.1, 0.2, -0.5, 0.3, -0.4, 0.1])
     found = []

@@ -157,7 +157,7 @@ def test_a_record_has_the_friction_of_the_instant_before_and_behind_its_samples(
 def test_velocity_errors_change_a_body_through_each_of_its_own_springs(
     yields: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of three bodies; friction that yields is one more spring of the platform."""
+    """Three bodies are linked; friction that yields is one more spring of the platform."""
     random = np.random.default_rng(8)
     defect, below, above = random.uniform(1.0, 3.0, (3, 3, 2))
     below[0], above[2] = np.nan, np.nan  # no springs
@@ -175,7 +175,7 @@ def test_velocity_errors_change_a_body_through_each_of_its_own_springs(
 
 
 def test_a_platform_at_rest_may_slip_from_eight_tenths_of_its_squared_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a rough run; it is then as fast as a slide near its stop, else as the ground."""
+    """A rough run then bounds its acceleration by that of a slide near its stop, otherwise by the ground's."""
     monkeypatch.setattr(look_ahead, "static_limit", lambda system, k_t, reaction: 0.5 * reaction)
     monkeypatch.setattr(look_ahead, "largest_near_stop", lambda gx, gy, *rest: 100.0 + gx + 10.0 * gy + rest[-1])
     load: Any = SimpleNamespace(k_t=1.0, fx=1.0, fy=2.0, px=0.5, py=-0.25)

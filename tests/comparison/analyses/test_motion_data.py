@@ -80,7 +80,7 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
 
 
 def test_the_page_finds_every_column_of_every_motion_among_the_packed_numbers(scene) -> None:
-    """By the layout that the module states: first value and differences, in units of a power of two."""
+    """The module states the layout: first value and differences, in units of a power of two."""
     motions = [replace(stored(scene, SMALL), status=Outcome.TRAVEL_REACHED), stored(scene, SPATIAL)]
     numbers = np.frombuffer(encode_motions(found(*motions)), "<i4")
     [place] = list_pairs_with_motions(found(*motions), scene)

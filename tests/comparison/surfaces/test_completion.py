@@ -256,7 +256,7 @@ def test_a_certificate_holds_as_often_as_its_confidence() -> None:
 
 
 def test_a_smooth_surface_is_completed_to_a_few_thousandths() -> None:
-    """By thin-plate splines from 12 phases per axis; planes between them miss 3 %."""
+    """Thin-plate splines from 12 phases per axis do it; planes between them miss 3 %."""
     coarse, fine = (2.0 * np.pi * np.arange(count) / count for count in (12, 48))
     truth = 2.0 + np.cos(fine[:, None] - 0.4) + 0.5 * np.sin(fine)
     made = interpolate_on_phases(truth[::4, ::4], coarse, fine)
