@@ -104,6 +104,11 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
     after = law.carry_spheres_along(np.zeros(10), before, RIGHT)
     of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
     np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
+    rocks = np.array([0.0, 0.0, 0.0, 0.0, 0.4, 0.0, *np.where(LEFT, 0.2, 0.0)])  # the left spheres rise with it
+    turns_easily = replace(law, inertias=np.array([[0.1, 0.1, 0.1]]))  # an impact on the right pushes the left down
+    hit, is_open = turns_easily.solve_impact(np.zeros(10), rocks, LEFT, RIGHT)
+    np.testing.assert_allclose((law.gap_rates(np.zeros(10)) @ hit)[LEFT], 0.0, atol=1e-9)
+    assert not is_open[LEFT].any()
     aside = np.array([0.1, -0.06, 0.05, 0.02, -0.03, 0.1, 0.05, 0.04, 0.06, 0.05])  # on a slope
     rates = law.gap_rates(aside) @ law.carry_spheres_along(aside, before, RIGHT)
     np.testing.assert_allclose(rates[RIGHT], 0.0, atol=1e-12)

@@ -64,6 +64,7 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     softer = soften_for_small_peaks(levels[3], 1e-6, 1e-3)
     assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
     assert softer.residual == pytest.approx(softer.rounding)
+    assert (softer.strength, levels[3].strength > 1e-5) == (1e-6, True)
     assert soften_for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), (
         "the softest that is tried"
     )

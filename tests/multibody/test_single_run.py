@@ -16,6 +16,7 @@ from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models import assembly
 from multibody.models.engine import exudyn, reset_when_unused
+from multibody.models.translational import _matrix_container
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
@@ -64,6 +65,15 @@ def test_a_constant_step_divides_a_duration_that_is_no_whole_number_of_it_but_fo
     """0.3 / 0.1 is less than 3 in binary numbers."""
     motion = multibody.single_run(SCENE.with_values({"duration": 0.3}), PHASE, step=0.1)
     assert motion.time[[1, -1]] == pytest.approx([0.1, 0.3])
+
+
+@pytest.mark.parametrize("size", [40, 41, 90])
+def test_the_matrices_of_a_chain_of_any_length_reach_the_engine_whole(size: int) -> None:
+    """Long ones go there as their non-zero entries."""
+    matrix = np.where(np.random.default_rng(3).random((size, size)) < 0.1, 1.0 + np.arange(size), 0.0)
+    given = _matrix_container(matrix)
+    whole = given if isinstance(given, np.ndarray) else given.Convert2DenseMatrix()
+    np.testing.assert_array_equal(whole, matrix)
 
 
 def test_a_run_that_cannot_end_takes_no_step(monkeypatch: pytest.MonkeyPatch) -> None:

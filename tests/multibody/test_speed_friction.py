@@ -119,6 +119,15 @@ def test_friction_that_depends_on_the_load_has_second_order_at_a_constant_step()
     assert errors[1] < errors[0] / 12.0 < 1e-6
 
 
+def test_every_contact_has_the_friction_of_its_own_speed() -> None:
+    law = {"slow": 0.03, "fast": 0.1, "rate": 20.0}
+    scene = load_scene("fig3-I").with_values({"isolator.friction": law, "isolator.supports": 3})
+    friction = assemble(scene, "spatial", V_REG).friction
+    contact, slips = np.zeros(12), [0.01, 0.2, 0.05]
+    contact[0::4], contact[1::4] = -1.0, slips
+    assert friction._read_speeds(contact, np.ones(30)) == slips
+
+
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 @pytest.mark.parametrize("law", [{"load_exponent": -0.3}, {"yield_displacement": 1e-3}], ids=["of load", "yielding"])
 def test_contact_forces_that_nobody_asks_for_change_no_motion(model: str, law: dict[str, float]) -> None:

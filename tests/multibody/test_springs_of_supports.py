@@ -314,6 +314,17 @@ def test_a_stop_that_later_runs_do_not_confirm_is_given_up(monkeypatch: pytest.M
     assert (peaks, stops) == ([1.0, 1.2, 1.2], [math.inf, first := 1.0 + 20.0 * LEVELS[0].step, math.inf, first + 2.0])
 
 
+@pytest.mark.parametrize(("outcome", "opens"), [(Outcome.STEP_LIMIT, False), (OK, True), (OK, False)])
+def test_a_trial_that_rattles_or_opens_is_run_again_on_other_springs(
+    outcome: Outcome, opens: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trial, again = result(1.0, outcome=outcome, opens=opens), result(2.0, opens=False)
+    monkeypatch.setattr(LevelRuns, "_run_trial", lambda runs, level: trial)
+    monkeypatch.setattr(LevelRuns, "_choose_springs_for_opening", lambda runs, run: again)
+    runs = LevelRuns(PhasePair(SCENE, MODEL, np.zeros(2)), TOLERANCE, Budget(1e9), [*LEVELS], False, True)
+    assert (runs.run_next_level() is again) == (outcome != OK or opens)
+
+
 @pytest.mark.parametrize("changes", [{}, {"soften": False}, {"outcome": Outcome.RIM_REACHED}, {"turns": True}], ids=str)
 def test_the_smallest_peak_softens_the_contact_unless_a_platform_turns(changes: dict[str, Any]) -> None:
     model: Any = SimpleNamespace(**{**vars(MODEL), "depressions": "some" if changes.get("turns") else None})

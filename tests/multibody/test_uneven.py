@@ -149,6 +149,14 @@ def test_a_push_that_no_contact_follows_is_an_error_of_the_engine(rate: float) -
     assert (multibody.amplification(stated, (0.4, 0.9), "spatial", max_work=3e4).error < 0.1 * soft.error).all()
 
 
+def test_more_than_three_supports_share_the_load_by_springs_unless_their_own_are_stated() -> None:
+    own, none = {"isolator.support_stiffness": 1e3}, {"isolator.support_stiffness": None}
+    three = at([[0.6, 0.5], [-0.5, 0.6], [0.1, -0.7]])
+    for changes, spheres in ((own, 0), (none, 4), ({**three, **none}, 0)):
+        scene = ON_BEARINGS.with_values(changes)
+        assert len(assemble(scene, "spatial", 1e-3).depressions.vertical) == spheres
+
+
 def test_an_eccentric_platform_tilts_and_moves_aside() -> None:
     """One body: the moment of its weight over the springs, and depressions that stay where the spheres are."""
     height, offset, stiffness, ring = 0.7, 0.03, 2e4, 0.6

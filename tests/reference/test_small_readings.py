@@ -15,7 +15,7 @@ from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
 from reference.measures.story_forces import story_forces
-from reference.problem import State, load_scene
+from reference.problem import Outcome, State, load_scene
 from reference.solver import ground, look_ahead, peaks
 from reference.solver.contact import stop_arc
 from reference.solver.peaks import update_peak_by_limit
@@ -151,6 +151,24 @@ def test_a_record_has_the_friction_of_the_instant_before_and_behind_its_samples(
         found = ground.record_acceleration_at.py_func(record, time)
         assert (found.x, found.y, found.z) == pytest.approx(expected)
         assert found.k_t == 0.5 + 0.1 * time
+
+
+def test_a_motion_whose_looser_run_ended_early_is_that_of_a_tighter_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both runs give its error, and it states its law of friction as any other."""
+    asked, record_run = [], motion._record_run
+
+    def early(system: Any, pair: Any, x: Any, v: Any, settings: Any) -> Any:
+        asked.append(settings.tolerance)
+        run = record_run(system, pair, x, v, settings)
+        return run._replace(outcome=Outcome.RIM_REACHED, instant=1.0) if len(asked) == 2 else run
+
+    usual = reference.trajectory(load_scene("fig3-II"), (0.3, 1.1), regularization=1e-3)
+    monkeypatch.setattr(motion, "_record_run", early)
+    found = reference.trajectory(load_scene("fig3-II"), (0.3, 1.1), regularization=1e-3)
+    assert asked[2] < asked[0] < asked[1]
+    assert (found.status, found.law) == ("ok", usual.law)
+    assert found.law != ""
+    assert found.accuracy is not None
 
 
 @pytest.mark.parametrize("yields", [False, True])

@@ -38,6 +38,15 @@ def test_a_thrown_platform_ends_where_its_energy_says(travel, speed, outcome, al
     assert np.hypot(*run.position[:, 0, :2].T).max() <= (travel or scene.radius) * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_a_travel_that_nobody_states_is_no_end(equations: str) -> None:
+    scene = chain(0.25, 0.0, amplitudes=[[1e-9, 0.0], [0.0, 0.0]], duration=1.0)
+    start = State(np.zeros((1, 2)), np.array([[1.5, 2.0]]))
+    assert reference.trajectory(scene, PHASE, equations, initial=start).status == Outcome.RIM_REACHED
+    own = limited(scene, 0.2499)
+    assert reference.trajectory(own, PHASE, equations, initial=start).status == Outcome.TRAVEL_REACHED
+
+
 @pytest.mark.parametrize(("law", "v_reg"), [("lubrication", None), ("friction", 1e-2), ("nothing", None)])
 @pytest.mark.parametrize("equations", ["exact", "small"])
 def test_the_instant_is_that_of_an_independent_solution(law: str, v_reg: float | None, equations: str) -> None:

@@ -69,6 +69,20 @@ def test_a_maximum_in_a_rougher_place_is_climbed_first(monkeypatch: pytest.Monke
     assert starts[:2].tolist() == (phase_grid(8)[[5 * 8 + 3, 1 * 8 + 2]]).tolist()
 
 
+def test_neighbors_of_equal_height_are_maxima(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A surface that one phase does not change has a ridge."""
+    scene = scene_with(monkeypatch, level)
+    ridge = np.tile(np.cos(2.0 * np.pi * np.arange(8) / 8)[:, None], 8)
+    assert {start[0] for start in find_local_maxima(ridge, scene).tolist()} == {0.0}
+
+
+def test_of_the_values_of_several_searches_each_has_its_own() -> None:
+    columns = {name: np.arange(5.0) + 10.0 * k for k, name in enumerate(("numerator", "denominator", "error"), 1)}
+    part = ComputedPhases(phases=np.arange(10.0).reshape(5, 2), **columns).select(slice(2, 4))
+    assert part.phases.tolist() == [[4.0, 5.0], [6.0, 7.0]]
+    assert [getattr(part, name).tolist() for name in columns] == [[12.0, 13.0], [22.0, 23.0], [32.0, 33.0]]
+
+
 def beside_a_gap(phases: Array) -> Array:
     return np.where(np.cos(phases - TOP - 2.0).sum(axis=1) > 1.0, np.nan, hill(phases))
 

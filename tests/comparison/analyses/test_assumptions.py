@@ -465,6 +465,9 @@ def test_a_section_tells_the_directions_of_its_scene_alone() -> None:
         for name, scene in (("fig3-I", FIRST), ("other", other))
     }
     assert [len(lines) for lines in told.values()] == [1, 2]
+    loaded = [replace(cell(what, 0.1), scene="other") for what in UNDER_LOAD]
+    both, own = (statements.assumption_lines(found_of(each), FIRST) for each in ([*cells, *loaded], cells))
+    assert both == own, "nor those on the bars of another"
 
 
 def test_cells_compare_the_two_engine_models() -> None:

@@ -398,6 +398,8 @@ def test_only_scenes_whose_friction_yields_are_asked_for_it() -> None:
     alone = _yielding(bodies=[{"mass": 1.0}])
     links = [number for _, number, _ in Conditioning().task_arguments(Study((alone,), 16, 1e-3))]
     assert links == [YIELDING], "without links"
+    own = load_scene("fig3-I").with_yield_displacement(2.54321e-3)
+    assert QUESTIONS[YIELDING].own_yield(own) == pytest.approx(2.54321e-3, rel=1e-8)
     for damping, other in (([[0.0, 0.0]], 0.05), ([[0.0, 0.0], [0.0, 0.7]], 0.0)):
         scene: Any = SimpleNamespace(damping=np.array(damping))
         assert [QUESTIONS[number].damping_of(scene) for number in (YIELDING, DAMPED)] == [None, other]
@@ -449,5 +451,9 @@ def test_yield_displacements_have_a_panel_and_a_table_of_their_own() -> None:
     assert others == conditioning_tables(known_curves())
     shuffled = conditioning_tables([*_known_yields(), *known_curves()[::-1]])
     assert [each["speed"] for each in shuffled] == ["v_c", "v_reg", "u_y"]
+    ways = (2e-3, 2.54e-3, 1e-4)
+    other = [replace(each, scene="other", v=ways) if len(each.v) == 3 else each for each in _known_yields()[:1]]
+    apart = conditioning_tables([*_known_yields(), *other])
+    assert [len(each["rows"]) for each in apart] == [len(table["rows"]), len(table["rows"]) // 2]
     assert (table["speed"], table["unit"], table["heads"]) == ("u_y", "m", ["2e-3", "1e-3", "1e-4"])
     assert [value for value, _ in table["rows"][1]["cells"]] == [2.1, 2.3, 2.2, pytest.approx(3.22)]

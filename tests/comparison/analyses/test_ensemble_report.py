@@ -311,6 +311,11 @@ def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
     assert "which the exact equations have not, is worth up to 30 % (isolator displacement" in regularized
 
 
+def test_a_demand_of_the_isolator_is_plotted_unless_it_is_zero_in_every_motion() -> None:
+    for values, plots in (((0.0, 0.0, 0.0, 0.2), 2), ((0.0,) * 4, 1)):
+        assert len(panels.make_isolator_panels(with_demand(planted(), "residual", None, exact=values))) == plots
+
+
 def test_a_smallest_support_force_is_no_demand_that_turning_changes() -> None:
     """A share of a force near zero: it has a clause of its own."""
     forces = {"exact": (9.0, 8.0, 4.0, 2.0), "spatial": (9.0, 8.0, 3.6, 1.0), "translational": (9.0, 8.0, 4.0, 2.0)}

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from terminal_tables import rows_under
 
 from comparison.cli import computing
+from comparison.evidence.claims import checks
+from comparison.evidence.claims import peaks_and_valleys as counting
 from comparison.evidence.claims import table as table_module  # table: what a test made
 from comparison.evidence.claims.checks import StatementVerdict, _describe_curvatures, count_peaks, find_unequal_axes
 from comparison.evidence.claims.claims import CLAIMS, PaperStatement
@@ -435,3 +437,16 @@ def test_the_reason_of_unequal_axes_is_the_number_of_the_second_body() -> None:
 def test_every_verdict_on_a_statement_has_a_reason(verdict: Verdict) -> None:
     with pytest.raises(ValueError, match="needs one"):
         StatementVerdict(verdict, "")
+
+
+@pytest.mark.parametrize(("best", "verdict"), [(counting.SHARE, MET), (counting.MIN_SHARE, NOT_MET)])
+def test_peaks_count_at_the_stated_prominence_alone(
+    best: float, verdict: Verdict, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def count(mu: Array, error: float, share: float) -> PeakCounts:
+        return PeakCounts(4, 3) if share == best else PeakCounts(9, 9)
+
+    monkeypatch.setattr(checks, "PEAK_COUNTS_BY_VIEW", {"periodic": count})
+    found = count_peaks(Evidence(CORNERS[..., None], 1e-4, ("ok",)), PeakCounts(4, 3))
+    assert found.verdict == verdict
+    assert "4 to 9" in found.reason

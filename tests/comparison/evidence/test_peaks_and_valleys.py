@@ -36,6 +36,7 @@ def test_ridges_are_counted_along_their_own_diagonal() -> None:
     rough = 0.3 * np.cos(3.0 * A1 + 3.0 * A2)
     assert count_profile(rough - np.cos(2.0 * (A1 - A2))) == PeakCounts(4, 3)
     assert count_profile(rough - np.cos(A1 - A2)) == PeakCounts(2, 1)
+    assert count_profile(rough + np.cos(A1 - A2)) == PeakCounts(3, 2), "in the middle and at both ends"
     assert count_profile(np.cos(A1 + A2)) == PeakCounts(0, 0)
 
 

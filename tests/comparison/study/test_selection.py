@@ -172,5 +172,7 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
     assert (", demands (" in usual, ", demands (" in also) == (False, True)
     assert "effective values (5)" in usual
     assert "on request; --also demands makes it" in usual
+    spaced = parse_options(["fig3-I", "--only", "surfaces, budget", "--out", str(tmp_path / "spaced")]).selection
+    assert [name for name in ("surfaces", "budget", "claims") if spaced.has(name, "fig3-I")] == ["surfaces", "budget"]
     named = _parser().format_help().split("these analyses, too: ")[1]
     assert named.split("--")[0].split() == ["demands"], "in the help, those on request alone"

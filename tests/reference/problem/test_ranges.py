@@ -123,6 +123,13 @@ ASKED: dict[str, list[Any]] = {
 ASKED["phases"].append([(0.1, np.ma.masked)])
 
 
+@pytest.mark.parametrize("kind", [list, tuple])
+def test_masked_phases_are_refused_in_lists_and_tuples(kind: Any) -> None:
+    row = np.ma.masked_array([0.1, 0.2], mask=[True, False])
+    for phases in (kind([row]), kind([kind([0.1, 0.2]), row]), [kind([0.1, np.ma.masked])]):
+        assert "masked" in str(refusal(reference.amplification, FIG3, phases))
+
+
 @pytest.mark.parametrize("side", [reference, multibody])
 def test_an_argument_outside_its_rules_is_one_line(side: Any) -> None:
     for name, values in ASKED.items():

@@ -266,6 +266,17 @@ def test_what_is_hardly_meant_is_one_line(values: dict[str, Any], lines: list[st
     assert implausible_values(load_scene("fig3-I").with_values(given).with_values(values)) == lines
 
 
+@pytest.mark.parametrize(("peak", "scale", "warns"), [(5.0, 8.0, True), (5.0, 4.0, False), (35.0, 1.0, False)])
+def test_a_record_is_hardly_meant_if_its_scale_makes_it_too_large(peak: float, scale: float, warns: bool) -> None:
+    """Beyond 3 g; whatever is beyond it as read, its own description tells."""
+    samples = [[0.0, 0.0, 0.0, 0.0], [0.1, peak, 0.0, 0.0], [0.3, -peak, 0.0, 0.0], [0.4, 0.0, 0.0, 0.0]]
+    shaken = {"excitation": {"record": "own.csv", "samples": samples, "scale": scale}, "duration": 0.4}
+    lines = implausible_values(load_scene("fig3-I").with_values(shaken))
+    assert [line for line in lines if "unit or scale?" in line] == [
+        f"the peak of the ground is {peak * scale / 9.81:.4g} g, above 3 g: unit or scale?"
+    ][: int(warns)]
+
+
 def test_masses_in_two_units_are_one_line_and_unit_masses_none() -> None:
     scene = load_scene("fig3-I")
     assert implausible_values(scene) == [], "the cases of the paper have masses of 1 kg"

@@ -75,6 +75,13 @@ def test_acceleration_is_linear_between_samples_and_integrated_exactly(folder):
         assert ground_displacement(scene, ANY, [end])[0, axis] == pytest.approx(covered, abs=1e-13)
 
 
+@pytest.mark.parametrize("integral", [ground_velocity, ground_displacement, ground_acceleration])
+def test_instants_that_are_none_are_refused_for_a_record_as_well(folder, integral):
+    scene = load_scene(written(folder, 'record = "a.csv"'))
+    for time in ([0.1, np.nan], np.ma.masked_array([0.1, 0.2], mask=[False, True])):
+        assert "time" in str(refusal(integral, scene, ANY, time))
+
+
 @given(arrays(float, (6, 3), elements=st.floats(-5.0, 5.0)), st.floats(0.05, 1.2))
 def test_the_peak_is_at_a_knot_or_at_the_end(values, duration):
     """No dense sampling finds more, and it finds as much to the spacing times the largest rate."""
