@@ -312,8 +312,10 @@ def test_one_sentence_keeps_geometry_codes_and_turning_apart() -> None:
 
 
 def test_a_demand_of_the_isolator_is_plotted_unless_it_is_zero_in_every_motion() -> None:
-    for values, plots in (((0.0, 0.0, 0.0, 0.2), 2), ((0.0,) * 4, 1)):
-        assert len(panels.make_isolator_panels(with_demand(planted(), "residual", None, exact=values))) == plots
+    for values, plots in (((0.0, 0.2), 2), ((0.0, 0.0), 1)):
+        at_scales = {"scales": (1.0, 2.0), "values": values, "errors": (0.0, 0.0)}
+        residual = replace(planted().curves[0], quantity="residual", **at_scales)
+        assert len(panels.make_isolator_panels(replace(planted(), curves=[*planted().curves, residual]))) == plots
 
 
 def test_a_smallest_support_force_is_no_demand_that_turning_changes() -> None:

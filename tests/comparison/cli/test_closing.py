@@ -161,3 +161,25 @@ def test_a_level_prints_eight_new_sentences_and_counts_the_others(
     shown = [f"  {sentence}" for sentence in said[before : before + 8]]
     rest = [f"  and {more} more on the page."] * (more > 0)
     assert capsys.readouterr().out.splitlines() == [f"Level 1 of 3: {Path('report/index.html')}", *shown, *rest]
+
+
+@pytest.mark.parametrize("words", [["--amplitude", "2"], ["--amplitude=2"]])
+def test_a_scene_whose_loading_was_changed_has_no_command_for_its_film(words: list[str]) -> None:
+    scene: Any = SimpleNamespace(name="fig3-I")
+    assert closing._find_source(scene, ["fig3-I", *words]) == ""
+    assert closing._find_source(scene, ["fig3-I", "--grid", "4"]) == "fig3-I"
+
+
+def test_every_model_with_a_message_is_named_once() -> None:
+    def task(stage: str) -> Any:
+        return SimpleNamespace(stage=stage, argument=SimpleNamespace(scene=SimpleNamespace(name="fig3-I")))
+
+    tasks = [task("exact"), task("spatial"), task("spatial"), task("small")]
+    said = [SimpleNamespace(error_message=text) for text in ("singular", "singular", "singular", "")]
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(reports, "collect_batch_results", lambda tasks, results: said)
+        alerts = reports._list_solver_messages(tasks, SimpleNamespace())
+    assert [(each.scene, each.text) for each in alerts] == [
+        ("fig3-I", "exact: singular"),
+        ("fig3-I", "spatial: singular"),
+    ]

@@ -111,6 +111,13 @@ def test_a_file_of_another_motion_ends_in_one_line(
         assert code in (0, 1) or (code, len(lines)) == (2, 1), lines
 
 
+@pytest.mark.parametrize("begin", [0.0, 1e5, -1e5])
+def test_a_record_may_begin_at_any_time_and_is_as_long_as_it_lasts(begin: float) -> None:
+    files._refuse_time(Path("a.mat"), "t", begin + np.arange(2500) / 250.0)
+    with pytest.raises(SceneError, match=r"t must span 1 to 10000 s, not 0\.998 s"):
+        files._refuse_time(Path("a.mat"), "t", begin + np.arange(500) / 500.0)
+
+
 def test_a_rule_that_a_measured_file_breaks_is_told_as_it_is() -> None:
     """Whatever else goes wrong with its numbers says in general what the file must hold."""
 

@@ -12,21 +12,25 @@ from typing import Any, NamedTuple
 
 import pytest
 from distinct_models import distinct_hierarchy, distinct_motions
+from fake_models import fake_hierarchy
 from known_analyses import analyses_are, known_others
 from known_results import FILES, MEASURED, SEARCHED, known_assumptions, leave_beside
 from places import scene_text
 from report_texts import data_of, page_of
-from runs import quick_figures
+from runs import RUN, quick_figures
+from studies import solved
 
 import comparison.registry
 from comparison.cli.reports import CompleteLevel, ReportWriter
 from comparison.json_file import format_json
-from comparison.registry import FEATURES
+from comparison.registry import FEATURES, make_report
 from comparison.report import page, writing
 from comparison.report.results import Results
 from comparison.run import main
 from comparison.runner.attempts import attempt
 from comparison.runner.runner import Runner
+from comparison.study.study import Study
+from reference.problem import load_scene
 
 FAMILY = "friction = 0.1", "friction = {values = [0.1, 0.2]}"
 ERROR = "RuntimeError: no <font> of the two is here"
@@ -223,3 +227,17 @@ def test_a_disk_that_takes_no_file_ends_the_command_and_a_file_of_others_costs_a
             attempt("a picture", partial(fail, number), lines.append)
     assert attempt("a picture", partial(fail, errno.EACCES), lines.append) is None
     assert lines == ["a picture could not be shown: PermissionError: [Errno 13] no"]
+
+
+def test_a_part_that_is_lost_is_told_on_the_page_that_lacks_it() -> None:
+    """A value that fails is in the report's list; what only one page lacks is not told on the other."""
+    study = Study((load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    place = next(each for each in places() if each.name == "compute")
+    with raising(place):
+        report = make_report(study, surfaces, {}, [], RUN, families=(), lost=["before"])
+    assert [line.partition(" could")[0] for line in report.lost] == ["before", place.said]
+    report = make_report(study, surfaces, {}, [], RUN, families=())
+    with raising(Place(page, "_group_alerts", "alerts")):
+        pages = page.render_pages(report)
+    assert ["alerts could not be shown" in text for text in pages.values()] == [True, False]

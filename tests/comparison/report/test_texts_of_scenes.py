@@ -14,7 +14,7 @@ from runs import RUN, Run
 from studies import solved
 
 from comparison.registry import EVERYTHING, make_report
-from comparison.report.junit import format_limits_as_junit
+from comparison.report.junit import JUnitCase, JUnitSuite, format_junit, format_limits_as_junit
 from comparison.report.page import make_page_header_style
 from comparison.report.summary_text import render_summary_text
 from comparison.runner.progress import make_wide_console, show_progress
@@ -125,3 +125,11 @@ def test_every_sign_that_could_end_the_style_is_escaped_in_the_header_of_a_page(
         style == '@page { @top-left { content: "Öl: a-b, 2.5 \\22 x\\22 \\3b  \\7d \\5c "; font: 7pt sans-serif; } }\n'
     )
     assert make_page_header_style("") == ""
+
+
+def test_the_message_of_a_failure_is_its_first_line() -> None:
+    cases = [JUnitCase(name="limit", failures=["body 1: too large", "body 2: too large"]), JUnitCase(name="held")]
+    suite = JUnitSuite(name="tower", seconds=1.0, timestamp="then", cases=cases)
+    [failure] = ElementTree.fromstring(format_junit([suite]).encode()).iter("failure")
+    assert failure.get("message") == "body 1: too large"
+    assert failure.text == "body 1: too large\nbody 2: too large"

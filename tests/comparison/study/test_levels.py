@@ -27,6 +27,7 @@ from comparison.runner.progress import Deadline, Display, TimeUpError, show_prog
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.study import levels
 from comparison.study.batches import execute_batch
 from comparison.study.levels import make_levels
 from comparison.study.models import MODEL_HIERARCHY
@@ -252,3 +253,16 @@ def test_work_is_counted_once_in_phase_pairs_and_tasks_of_its_weight() -> None:
         ("roots: 1 of 2 tasks", 48.0),  # the longest first
         ("roots: 2 of 2 tasks", 50.0),
     ]
+
+
+@pytest.mark.parametrize("grid", [12, 30, 48, 50, 60])
+def test_every_engine_has_its_finest_nested_grid_on_a_coarse_level(grid: int) -> None:
+    study = Study((load_scene("fig3-I"),), grid, 1e-3, MODEL_HIERARCHY)
+    for most in levels.MAX_PHASES_OF_LEVEL:
+        coarse = levels._coarsen_study(study, most)
+        thinner = grid // coarse.grid
+        for model, same in zip(study.hierarchy, coarse.hierarchy, strict=True):
+            stride = levels._find_stride(study, model, most["spatial" if model.is_spatial else model.side])
+            if model.side == "reference":  # all phases of the thinner grid
+                stride = thinner
+            assert (thinner * coarse.phase_indices(same)).tolist() == [*range(0, grid, stride)], model.key
