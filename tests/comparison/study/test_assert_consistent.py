@@ -11,7 +11,7 @@ import pytest
 from known_analyses import answering, with_engine_off_by
 
 import reference
-from comparison.study.batches import execute_batch
+from comparison.study.batches import drop_unusable, execute_batch
 from comparison.study.user_models import REFERENCE_MODEL_KEYS
 from comparison.testing import assert_consistent
 from reference.problem import Scene, SceneError
@@ -197,3 +197,22 @@ def test_only_the_models_that_a_limit_needs_are_computed(
     computed.clear()
     assert_consistent(scene, **{"like_for_like": 1e-3, limit: 1e-3})
     assert {batch.model for batch in computed} == {*models, "regularised", "translational"}
+
+
+def test_a_broken_median_is_told_with_the_largest_difference_and_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    def change(found: reference.Amplification, phases: np.ndarray) -> None:
+        found.mu *= np.where(np.arange(len(phases)) == 5, 1.03, 1.01)[:, None]
+
+    change_engine(monkeypatch, change)
+    line, _ = failure(like_for_like=1e-3)
+    assert "median difference 0.01, allowed 0.001; largest 0.03 at (" in line
+    assert line.endswith(", translational engine 2.06 ± 1e-06")
+
+
+@pytest.mark.parametrize("value", [-1.0, 1e13, np.inf])
+def test_an_answer_that_failed_keeps_its_reason_whatever_its_value(value: float) -> None:
+    mu, error = np.array([[value, 2.0]] * 4 + [[1.5, 2.0]]), np.zeros((5, 2))
+    status = ["ok", "ok, nearly", "diverged", "tolerance not met", "diverged"]
+    drop_unusable(mu, error, status, own=True)
+    assert status == [*["value out of range"] * 2, "diverged", "value out of range", "diverged"]
+    assert np.isnan(mu).all()
