@@ -31,7 +31,7 @@ def read(content, name="a.txt", **options):
 
 AT2 = {  # texts of five values at 0.01 s
     "trailer behind the last value": IN_G + FIELDS + "*** End Data ***\n",
-    "a block of velocities behind it": IN_G + FIELDS + "VELOCITY IN UNITS OF CM/S\n  .1000000E+01  .2000000E+01\n",
+    "trailer with a block of velocities": IN_G + FIELDS + "VELOCITY IN UNITS OF CM/S\n  .1000000E+01  .2000000E+01\n",
     "trailer of two lines": IN_G + FIELDS + "\n*** End Data ***\nchecked by somebody\n",
     "a title behind the sizes": IN_G + "*** Begin data ***\n" + FIELDS,
     "a long header": "x\n" * 15 + IN_G + FIELDS,
