@@ -115,7 +115,7 @@ def test_a_demand_that_is_not_there_is_named() -> None:
 
 
 def test_every_outcome_keeps_its_whole_name() -> None:
-    """The names have from two to two dozen letters."""
+    """Some are longer than that of the outcome which stands for pairs without a motion."""
     scene, ended = chain(duration=0.2), iter(Outcome)
     phases = np.linspace(0.0, 1.0, 2 * len(Outcome)).reshape(-1, 2)
     surface = demands_of_motions(

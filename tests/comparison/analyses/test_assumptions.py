@@ -300,9 +300,8 @@ def test_a_change_says_reading_base_sign_error_and_place() -> None:
     )
     assert "literal supremum" in describe_change(replace(change, reading="literal supremum"))
     assert largest_change(found, moved, 1).base == "the translational model"
-    once = replace(
-        stated, change=stated.change[:1], uncertainty=stated.uncertainty[:1]
-    )  # by symmetry equal at both pairs
+    # one pair is computed where both are equal by symmetry
+    once = replace(stated, change=stated.change[:1], uncertainty=stated.uncertainty[:1])
     assert largest_change(found, moved, 1, once).size == pytest.approx(0.576 / 0.91 - 1.0)
     assert describe_change(replace(change, size=math.nan)) == "mu_1: not compared, a phase pair has no value"
     [line] = assumption_lines(found, FIRST)

@@ -451,9 +451,8 @@ def test_yield_displacements_have_a_panel_and_a_table_of_their_own() -> None:
     assert others == conditioning_tables(known_curves())
     shuffled = conditioning_tables([*_known_yields(), *known_curves()[::-1]])
     assert [each["speed"] for each in shuffled] == ["v_c", "v_reg", "u_y"]
-    ways = (2e-3, 2.54e-3, 1e-4)
-    other = [replace(each, scene="other", v=ways) if len(each.v) == 3 else each for each in _known_yields()[:1]]
-    apart = conditioning_tables([*_known_yields(), *other])
+    other = replace(_known_yields()[0], scene="other", v=(2e-3, 2.54e-3, 1e-4))
+    apart = conditioning_tables([*_known_yields(), other])
     assert [len(each["rows"]) for each in apart] == [len(table["rows"]), len(table["rows"]) // 2]
     assert (table["speed"], table["unit"], table["heads"]) == ("u_y", "m", ["2e-3", "1e-3", "1e-4"])
     assert [value for value, _ in table["rows"][1]["cells"]] == [2.1, 2.3, 2.2, pytest.approx(3.22)]

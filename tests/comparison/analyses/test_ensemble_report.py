@@ -633,7 +633,9 @@ def test_the_literal_supremum_is_a_row_only_where_it_differs(folder: Path, found
     ]
     tables = page._height_context(replace(planted(), structures=both, stripes=stripes), LostParts())["tables"]
     rows_of_both = [(row.name, row.bound) for row in tables[-1][1]]
-    assert rows_of_both == [("deck", "b"), ("deck", "c"), ("deck", "envelope")], "of a floor where those of one differ"
+    assert rows_of_both == [("deck", "b"), ("deck", "c"), ("deck", "envelope")], (
+        "a floor has all its rows where one differs"
+    )
 
 
 def test_plots_and_tables_name_the_floors_and_mark_code(folder: Path, found: EnsembleResult) -> None:

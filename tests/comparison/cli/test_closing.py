@@ -170,15 +170,14 @@ def test_a_scene_whose_loading_was_changed_has_no_command_for_its_film(words: li
     assert closing._find_source(scene, ["fig3-I", "--grid", "4"]) == "fig3-I"
 
 
-def test_every_model_with_a_message_is_named_once() -> None:
+def test_every_model_with_a_message_is_named_once(monkeypatch: pytest.MonkeyPatch) -> None:
     def task(stage: str) -> Any:
         return SimpleNamespace(stage=stage, argument=SimpleNamespace(scene=SimpleNamespace(name="fig3-I")))
 
     tasks = [task("exact"), task("spatial"), task("spatial"), task("small")]
     said = [SimpleNamespace(error_message=text) for text in ("singular", "singular", "singular", "")]
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(reports, "collect_batch_results", lambda tasks, results: said)
-        alerts = reports._list_solver_messages(tasks, SimpleNamespace())
+    monkeypatch.setattr(reports, "collect_batch_results", lambda tasks, results: said)
+    alerts = reports._list_solver_messages(tasks, SimpleNamespace())
     assert [(each.scene, each.text) for each in alerts] == [
         ("fig3-I", "exact: singular"),
         ("fig3-I", "spatial: singular"),

@@ -133,21 +133,21 @@ def test_a_rule_that_a_measured_file_breaks_is_told_as_it_is() -> None:
         assert "Exp1.mat" in str(told.value)
 
 
-@pytest.mark.parametrize(
-    ("owner", "name", "file"),
-    [
-        (frame, "compare_frame", "s_b_<weight>g_x.mat"),
-        (pendulum, "compare_decay", DECAY_FILE),
-        (pendulum, "compare_large_swings", LARGE_SWING_FILE),
-    ],
-)
+COMPARISONS = [  # module, its function, and the file whose numbers that compares
+    (frame, "compare_frame", "s_b_<weight>g_x.mat"),
+    (pendulum, "compare_decay", DECAY_FILE),
+    (pendulum, "compare_large_swings", LARGE_SWING_FILE),
+]
+
+
+@pytest.mark.parametrize(("owner", "name", "file"), COMPARISONS)
 def test_numbers_that_cannot_be_compared_name_their_file(
     monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, file: str
 ) -> None:
     def fails(measured: object) -> ExperimentFindings:
         raise IndexError("7 of 3")
 
-    for each, other in ((frame, "compare_frame"), (pendulum, "compare_decay"), (pendulum, "compare_large_swings")):
+    for each, other, _ in COMPARISONS:
         monkeypatch.setattr(each, other, lambda measured: ExperimentFindings([], [], [], [], []))
     monkeypatch.setattr(owner, name, fails)
     measured = SimpleNamespace(runs=["run"], decay="decay", large="large")

@@ -420,16 +420,13 @@ def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.diff(timed)[::2].tolist() == [growth.WORKER_CALLS] * 3, "the clock starts when all are warm"
 
 
-def test_an_earlier_table_that_is_damaged_is_refused_and_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("out").mkdir()
+def test_an_earlier_table_that_is_damaged_is_refused_and_stays(tmp_path: Path) -> None:
+    file = tmp_path / trade.STORED.name
     for content in (b"{", b'{"schema": "another"}', b"[1, 2]"):
-        (Path("out") / trade.STORED.name).write_bytes(content)
-        with pytest.raises(UsageError, match=f"{trade.STORED.name}: not a measured trade"):
-            command._load_trades(Path("out"))
-        assert (Path("out") / trade.STORED.name).read_bytes() == content
+        file.write_bytes(content)
+        with pytest.raises(UsageError, match=f"{file.name}: not a measured trade"):
+            command._load_trades(tmp_path)
+        assert file.read_bytes() == content
 
 
 def test_two_files_of_one_name_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:

@@ -306,7 +306,7 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
 
 
 def known_decay(half: float, loss: float, step: float) -> FreeSwing:
-    """Half period, s, angle lost in a half swing and step of the encoder, rad; slower by 1 % behind five of them."""
+    """A swing that loses `loss`, rad, in every `half`, s, read in steps, rad; 1 % slower behind five half swings."""
     time = np.arange(-0.3 * half, 16.0 * half, 1e-3)
     slower = np.where(time < 5.0 * half, time, 5.0 * half + (time - 5.0 * half) / 1.01)  # as no side computes it
     number = np.floor(slower / half)
